@@ -171,7 +171,7 @@ def test_folds_that_cannot_be_removed_are_faces():
 
 def test_the_documentation_lists_exactly_the_kinds_of_the_core():
     text = authalic.MeshError.__doc__
-    attributes, kinds = text.split("Attributes\n")[1].split("Kinds\n")
+    attributes, kinds = text.split("Attributes\n")[1].split("Notes\n")
     names = re.findall(r"^(\w+) : ", attributes, re.MULTILINE)
     assert set(names) == set(facts(""))
     listed = re.findall(r"^(\w+)\n    (.+)$", kinds, re.MULTILINE)

@@ -5,10 +5,14 @@ from typing import Literal
 
 
 class RegistrationWarning(str):
-    """A sign that the curves of a registration do not say what was meant. As a string it is its message.
+    """A sign that the curves of a registration do not say what was meant.
 
-    Attributes
+    As a string it is its message. The attributes have the names of the parameters.
+
+    Parameters
     ----------
+    message : str
+        The message.
     kind : str
         One of `WARNING_KINDS`, which says what the indices number.
     side : "source", "target" or None
@@ -24,8 +28,6 @@ class RegistrationWarning(str):
     value : float or None
         The figure that is too large: for "strained" the energy over that of the surface itself, for
         "distorted" the share of the surface.
-    message : str
-        The message.
     """
 
     kind: str
@@ -56,4 +58,5 @@ class RegistrationWarning(str):
 
     @property
     def message(self) -> str:
+        """The message, as a plain string."""
         return str(self)

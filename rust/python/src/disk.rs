@@ -57,9 +57,10 @@ impl DiskMap {
 
 #[pymethods]
 impl DiskMap {
-    /// Structured array with the fields iteration, authalic_energy, step, gradient_norm, seconds: one record per
-    /// iteration, the start first. gradient_norm is √(gᵀM⁻¹g), the norm of the gradient in the preconditioner's
-    /// metric; 0 for a start that "gauss_newton" keeps.
+    /// One record per iteration, the start first, as a structured array.
+    ///
+    /// Its fields are iteration, authalic_energy, step, gradient_norm, seconds. gradient_norm is √(gᵀM⁻¹g), the norm
+    /// of the gradient in the preconditioner's metric; 0 for a start that "gauss_newton" keeps.
     #[getter]
     fn history(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         Ok(self.history.get_or_try_init(py, || history(py, &self.records))?.clone_ref(py))
@@ -89,7 +90,7 @@ impl DiskMap {
 /// ----------
 /// vertices : (n, 3) real array
 ///     Positions, any unit. Or a Surface, without `faces`.
-/// faces : (m, 3) integer array
+/// faces : (m, 3) int array
 ///     Triangles of an orientable manifold with one boundary loop and no handles.
 /// method : {"gauss_newton", "conjugate_gradient", "fixed_point"}
 ///     The optimizer.
@@ -102,7 +103,7 @@ impl DiskMap {
 /// density : (m,) real array, optional
 ///     Positive target measure of each face, on any scale. Default: the face areas.
 /// angle_weight : float
-///     λ ≥ 0, the weight of the angle distortion against that of areas: 0 (default) preserves areas alone, .03 is a
+///     Weight λ ≥ 0 of the angle distortion against that of areas: 0 (default) preserves areas alone, .03 is a
 ///     balance, .3 preserves shapes at the expense of areas. For "gauss_newton" only.
 /// area_tolerance : float, optional
 ///     Instead of a weight: the map of least shear whose area deviation √(E_A/A), with A the area of the image, is
@@ -128,7 +129,7 @@ impl DiskMap {
 /// overlap : bool
 ///     Let a free boundary cross itself, which distorts angles less where limbs would meet in the plane. Default
 ///     False: maps are one-to-one. ValueError unless the boundary is "free".
-/// corners : (4,) integer array, optional
+/// corners : (4,) int array, optional
 ///     For a rectangle: the boundary vertices at its corners, counter-clockwise from the lower left. Default: where the
 ///     boundary turns most, and if there are fewer than four such places, the middles of the longest sides between
 ///     them; laid out with z, or on flat surfaces y, up. Corners are refused if an inner edge joins two vertices of one
@@ -227,14 +228,21 @@ pub fn disk_map(
 /// densities : sequence of (m,) real arrays or None, optional
 ///     The target measures of the faces of each surface. Default: the face areas.
 /// method : {"gauss_newton", "conjugate_gradient", "fixed_point"}
+///     The optimizer. This and the following options are as for `disk_map`, and the same for all surfaces.
 /// boundary : {"sliding", "arc_length", "free", "rectangle"}
+///     Where the boundaries go.
 /// angle_weight : float
+///     Weight of the angle distortion.
 /// area_tolerance : float, optional
+///     Area deviation within which to look for the map of least shear.
 /// max_iterations : int, optional
+///     Iteration limit.
 /// tolerance : float, optional
+///     When a descent has converged.
 /// fill_holes : bool
+///     Fill all boundary loops but the longest virtually.
 /// overlap : bool
-///     These are as for `disk_map`, and for all surfaces the same.
+///     Let free boundaries cross themselves.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between surfaces and within large ones; False ends the run.
 ///

@@ -71,7 +71,7 @@ impl Distortion {
 /// ----------
 /// vertices : (n, 3) real array
 ///     Positions on the surface, any unit. Or a Surface, without `faces`: `distortion(surface, image)`.
-/// faces : (m, 3) integer array
+/// faces : (m, 3) int array
 ///     Triangles; they need not form a manifold. Faces turned against the rest of their component are turned back.
 /// image : (n, 2) or (n, 3) real array
 ///     The map: into the plane (a face is positive counter-clockwise), or onto a sphere around the origin

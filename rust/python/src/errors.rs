@@ -14,7 +14,8 @@ create_exception!(
     PyValueError,
     "Bad input: the message says what is wrong, where, and what to do.
 
-The attributes hold the facts of the message, which may be reworded.
+The attributes hold the facts of the message, which may be reworded. A ValueError about an option has them too,
+with the kind \"invalid_option\".
 
 Attributes
 ----------
@@ -29,9 +30,7 @@ second_curve : int or None
 indices : tuple of int, or of pairs of int
     The first few elements at fault, an edge as a pair of vertices.
 count : int
-    The number of elements at fault.
-
-A ValueError about an option has these attributes too, with the kind \"invalid_option\"."
+    The number of elements at fault."
 );
 create_exception!(
     authalic,
@@ -59,7 +58,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 fn list_kinds(class: &Bound<'_, PyType>) -> PyResult<()> {
     let name = intern!(class.py(), "__doc__");
     let mut text: String = class.getattr(name)?.extract()?;
-    text.push_str("\n\nKinds\n-----\n");
+    text.push_str("\n\nNotes\n-----\nThe kinds are:\n\n");
     for kind in ErrorKind::ALL {
         text.push_str(&format!("{}\n    {}\n", kind.as_str(), kind.meaning()));
     }

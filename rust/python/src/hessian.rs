@@ -22,7 +22,7 @@ type Columns = (Py<PyArray1<f64>>, Py<PyArray1<i64>>, Py<PyArray1<i64>>);
 /// ----------
 /// vertices : (n, 3) real array
 ///     Positions on the surface, any unit. Or a Surface, without `faces`: `stretch_hessian(surface, image)`.
-/// faces : (m, 3) integer array
+/// faces : (m, 3) int array
 ///     Triangles of an orientable manifold.
 /// image : (n, 3) real array
 ///     The map.

@@ -16,15 +16,19 @@ use crate::values::Values;
 /// A map onto the sphere laid out in the plane, cut open along a seam, without folds.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Layout {
-    /// (k, 2) float64 or float32, as requested: the points in the order of their vertices. The whole image has the area of
-    /// the unit sphere.
+    /// (k, 2) float64 or float32, as requested: the points in the order of their vertices.
+    ///
+    /// The whole image has the area of the unit sphere.
     points: Py<PyAny>,
     /// (m, 3) int64: the faces of the map, or of its refinement, between points, counter-clockwise.
     faces: Py<PyArray2<i64>>,
-    /// (k,) int64: the vertex of each point, ascending; a vertex on the seam has several. Split points of a refinement are
-    /// numbered on from the vertices.
+    /// (k,) int64: the vertex of each point, ascending.
+    ///
+    /// A vertex on the seam has several points. Split points of a refinement are numbered on from the vertices.
     vertex_of: Py<PyArray1<i64>>,
-    /// "converged" if areas are as even as they should be, "stalled" if they hardly get more even, "cancelled". No face is
+    /// "converged", "stalled" or "cancelled".
+    ///
+    /// It has converged if areas are as even as they should be, and stalled if they hardly get more even. No face is
     /// folded in any case.
     status: &'static str,
     /// Wall time of the call.

@@ -45,9 +45,9 @@ impl Packing {
 /// ----------
 /// uv : (n, 2) real array
 ///     The points of all islands, at the density common to all. Islands may lie over each other.
-/// faces : (m, 3) integer array
+/// faces : (m, 3) int array
 ///     Faces between points.
-/// island_of : (m,) integer array
+/// island_of : (m,) int array
 ///     The island of each face, numbered from 0. No two islands have a point in common.
 /// margin : float
 ///     Least distance of islands from each other and from the border of the square, in [0, .5), in units of the

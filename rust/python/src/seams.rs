@@ -238,12 +238,12 @@ fn direction(object: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
 /// Parameters
 /// ----------
 /// surface : Surface, or (vertices, faces)
-///     (n, 3) real and (m, 3) integer array: an orientable manifold where it is not cut along `fixed`.
+///     (n, 3) real and (m, 3) int array: an orientable manifold where it is not cut along `fixed`.
 /// target : float
 ///     The mean of σ₁/σ₂ over the surface that is wanted, > 1: the ratio of the singular values of each face's map,
 ///     weighted by area; 1 is no shear. Default 1.4, which needs the shortest seams that still look even; 1.25 needs
 ///     them about a quarter longer, up to three times on much relief, and shows hardly any shear.
-/// fixed : (k, 2) integer array, optional
+/// fixed : (k, 2) int array, optional
 ///     Seams that are given, each the two ends of an edge. They stay, and others are added.
 /// weights : (n,) or (e,) real array, optional
 ///     Factors of the cost of a seam, > 0, at the vertices or at the edges in ascending order of their ends, the lower
@@ -259,7 +259,7 @@ fn direction(object: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
 ///     The most islands of the surface, ≥ 1; components, and parts between `fixed` seams, have at least one each.
 /// overlap : bool
 ///     Let islands overlap themselves in the plane, which makes seams shorter. Default False.
-/// diagonals : (d, 2) integer array, optional
+/// diagonals : (d, 2) int array, optional
 ///     Edges that only triangulate polygons, each as its two ends. Seams along them cost four times as much.
 /// method : "search" or "cones"
 ///     "search", the default, seeks the shortest seams and maps the islands to check them. "cones" joins the places of
@@ -342,8 +342,8 @@ pub fn seams(
 /// Parameters
 /// ----------
 /// surface : Surface, or (vertices, faces)
-///     (n, 3) real and (m, 3) integer array: an orientable manifold where it is not cut along seams.
-/// seams : "auto", (s, 2) integer array, or None
+///     (n, 3) real and (m, 3) int array: an orientable manifold where it is not cut along seams.
+/// seams : "auto", (s, 2) int array, or None
 ///     "auto", the default, finds them, as `seams` does with the options below. An array has all seams, each as the two
 ///     ends of an edge, and no others are made. None has no seams: the components must be disks, or have holes. The
 ///     options from `target` to `diagonals` but `overlap` count for "auto" only.
@@ -351,7 +351,7 @@ pub fn seams(
 ///     The mean of σ₁/σ₂ over the surface that is wanted, > 1: the ratio of the singular values of each face's map,
 ///     weighted by area; 1 is no shear. Default 1.4, which needs the shortest seams that still look even; 1.25 needs
 ///     them about a quarter longer, up to three times on much relief, and shows hardly any shear.
-/// fixed : (k, 2) integer array, optional
+/// fixed : (k, 2) int array, optional
 ///     Seams that are given, each the two ends of an edge. They stay, and others are added.
 /// weights : (n,) or (e,) real array, optional
 ///     Factors of the cost of a seam, > 0, at the vertices or at the edges in ascending order of their ends, the lower
@@ -367,7 +367,7 @@ pub fn seams(
 ///     The most islands of the surface, ≥ 1; components, and parts between `fixed` seams, have at least one each.
 /// overlap : bool
 ///     Let islands overlap themselves in the plane, which makes seams shorter. Default False.
-/// diagonals : (d, 2) integer array, optional
+/// diagonals : (d, 2) int array, optional
 ///     Edges that only triangulate polygons, each as its two ends. Seams along them cost four times as much.
 /// pack : bool
 ///     Pack the islands into the unit square. False leaves each island where its map lies, with the areas of the surface:

@@ -26,22 +26,27 @@ pub struct SphereMap {
     /// (m, 3) int64: the faces as oriented; faces turned against the rest are flipped.
     #[pyo3(get)]
     faces: Py<PyArray2<i64>>,
-    /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound in every case. A converged map need
-    /// not be even, see `distortion.area_ratio_std`; on long limbs `refine` makes it even.
+    /// "converged", "max_iterations", "stalled" or "cancelled".
+    ///
+    /// The map is sound in every case. A converged map need not be even, see `distortion.area_ratio_std`; on long
+    /// limbs `refine` makes it even.
     #[pyo3(get)]
     status: &'static str,
     /// Iterations done, fixed-point steps included.
     #[pyo3(get)]
     iterations: usize,
-    /// Structured array with the fields iteration, authalic_energy (of unsigned areas), step, gradient_norm, seconds:
-    /// one record per iteration, the start first, and one of step 0 where a mended map replaced a folded one.
-    /// gradient_norm is √(gᵀM⁻¹g), the norm of the gradient in the preconditioner's metric; 0 for a start that
-    /// "gauss_newton" keeps. With
-    /// `refine`, the records of all descents, even discarded ones.
+    /// One record per iteration, the start first, as a structured array.
+    ///
+    /// Its fields are iteration, authalic_energy (of unsigned areas), step, gradient_norm, seconds. A record of step
+    /// 0 stands where a mended map replaced a folded one. gradient_norm is √(gᵀM⁻¹g), the norm of the gradient in the
+    /// preconditioner's metric; 0 for a start that "gauss_newton" keeps. With `refine`, it has the records of all
+    /// descents, even discarded ones.
     #[pyo3(get)]
     history: Py<PyAny>,
-    /// The figures of the map. The image of a split face consists of those of its parts: its area is their sum, its
-    /// angle distortion their mean, and it is folded if one of them is.
+    /// The figures of the map.
+    ///
+    /// The image of a split face consists of those of its parts: its area is their sum, its angle distortion their
+    /// mean, and it is folded if one of them is.
     #[pyo3(get)]
     distortion: Py<Distortion>,
     /// The split faces, with `refine`; else None.
@@ -149,12 +154,12 @@ impl SphereMap {
     ///     The left side of a Lambert layout, or the upper side of the square: a direction, whose component
     ///     perpendicular to the pole counts, or an angle about the pole in radians, counter-clockwise seen from outside
     ///     above the pole. Angles begin at +y, for poles within 45° of ±y at −z. Default 0.
-    /// polygons : (m,) integer array, optional
+    /// polygons : (m,) int array, optional
     ///     The number of each face's polygon: faces with one number that meet at an edge are not cut apart, areas are
     ///     those of polygons, and rows of quads stay rows. Default: each face is a polygon.
     /// density : (m,) real array, optional
     ///     Positive target measure of each face, on any scale. Default: the measure of the map.
-    /// candidates : (k,) integer or (n,) bool array, optional
+    /// candidates : (k,) int or (n,) bool array, optional
     ///     The vertices that may be moved onto singular points: the two poles of "lambert", four points of the equator,
     ///     at the middles of the sides, for "octahedral". Default: all.
     /// precision : {"float64", "float32"}
@@ -230,7 +235,7 @@ impl SphereMap {
 /// ----------
 /// vertices : (n, 3) real array
 ///     Positions, any unit. Or a Surface, without `faces`.
-/// faces : (m, 3) integer array
+/// faces : (m, 3) int array
 ///     Triangles of a connected orientable manifold without boundary and without handles.
 /// method : {"gauss_newton", "gradient_descent", "fixed_point"}
 ///     The optimizer.
@@ -240,7 +245,7 @@ impl SphereMap {
 /// density : (m,) real array, optional
 ///     Positive target measure of each face, on any scale. Default: the face areas.
 /// angle_weight : float
-///     λ ≥ 0, the weight of the angle distortion against that of areas: 0 (default) preserves areas alone, .03 is a
+///     Weight λ ≥ 0 of the angle distortion against that of areas: 0 (default) preserves areas alone, .03 is a
 ///     balance, .3 preserves shapes at the expense of areas. For "gauss_newton" only.
 /// area_tolerance : float, optional
 ///     Instead of a weight: the map of least shear whose area deviation √(E_A/A), with A the area of the image, is

@@ -19,12 +19,15 @@ type Isometries = Py<PyArray2<Complex64>>;
 /// A pair of pants between closed geodesics, and its two right-angled hexagons.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Pants {
-    /// (3,) float64: the lengths of its boundaries: the pants curve before it, the feature, the pants curve after it.
-    /// At the ends of the chain the first and the last feature take the place of curves.
+    /// (3,) float64: the lengths of its boundaries.
+    ///
+    /// They are those of the pants curve before it, the feature, and the pants curve after it. At the ends of the
+    /// chain the first and the last feature take the place of curves.
     boundary_lengths: Py<PyArray1<f64>>,
-    /// (2, 6, 2) float64: the corners of the hexagons in Klein's model. Sides 0–1, 2–3 and 4–5 lie on the
-    /// boundaries in the order of the lengths and are half as long; both hexagons share side 5–0. The first is
-    /// counter-clockwise, the second its mirror image.
+    /// (2, 6, 2) float64: the corners of the hexagons in Klein's model.
+    ///
+    /// Sides 0–1, 2–3 and 4–5 lie on the boundaries in the order of the lengths and are half as long; both hexagons
+    /// share side 5–0. The first is counter-clockwise, the second its mirror image.
     hexagons: Py<PyArray3<f64>>,
     /// (2, 6) float64: the inner angles, π/2 up to rounding.
     angles: Py<PyArray2<f64>>,
@@ -91,8 +94,10 @@ pub struct HyperbolicStructure {
     /// B − 1 pairs of (k,) int64: the left and right copy of each arc, as vertices of the disk along the chain.
     #[pyo3(get)]
     arcs: Vec<Sides>,
-    /// (B − 1, 2) complex128: the generators of the Fuchsian group. Generator k takes the left copy of arc k to the
-    /// right one; it goes around the first k features of the chain, counted from 1.
+    /// (B − 1, 2) complex128: the generators of the Fuchsian group.
+    ///
+    /// Generator k takes the left copy of arc k to the right one; it goes around the first k features of the chain,
+    /// counted from 1.
     #[pyo3(get)]
     generators: Isometries,
     /// (B,) float64: the lengths of the features once around, in the order given.
@@ -101,8 +106,9 @@ pub struct HyperbolicStructure {
     /// B − 2 pairs of pants along the chain.
     #[pyo3(get)]
     pants: Vec<Py<Pants>>,
-    /// B − 3 arrays (k, 3) float64: the closed geodesics between the pants on the surface; the first point is
-    /// repeated at the end.
+    /// B − 3 arrays (k, 3) float64: the closed geodesics between the pants on the surface.
+    ///
+    /// The first point of each is repeated at the end.
     #[pyo3(get)]
     pants_curves: Vec<Py<PyArray2<f64>>>,
     /// (B − 3,) float64: the lengths of the geodesics.
@@ -179,6 +185,20 @@ impl HyperbolicStructure {
     /// ------
     /// ValueError
     ///     `copies` is below 1.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic, numpy as np
+    /// >>> t = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    /// >>> z = np.linspace(-0.9, 0.9, 13)
+    /// >>> rings = [[(1 - h * h) ** 0.5 * np.cos(a), (1 - h * h) ** 0.5 * np.sin(a), h] for h in z for a in t]
+    /// >>> faces = [f for i in range(12) for j in range(24) for a, b in [(24 * i + j, 24 * i + (j + 1) % 24)]
+    /// ...          for f in ([a, b, b + 24], [a, b + 24, a + 24])]
+    /// >>> curves = [[76, 100, 124, 148], [88, 112, 136, 160, 184]]
+    /// >>> structure = authalic.hyperbolic_structure(rings, faces, curves=curves)
+    /// >>> words, motions = structure.cover(7)
+    /// >>> words[0], len(words[1]), motions.shape
+    /// ((), 1, (7, 2))
     fn cover(&self, py: Python<'_>, copies: i64) -> PyResult<(Vec<Py<PyAny>>, Isometries)> {
         let count = usize::try_from(copies).ok().filter(|&count| count > 0);
         let count = count.ok_or_else(|| bad_option(format!("copies must be ≥ 1, but is {copies}")))?;
@@ -201,8 +221,9 @@ impl HyperbolicStructure {
     }
 }
 
-/// The hyperbolic structure of a surface of genus 0 sliced along curves: metric, Fuchsian group, pants and
-/// hexagons.
+/// The hyperbolic structure of a surface of genus 0 sliced along curves.
+///
+/// It consists of the metric, the Fuchsian group, pairs of pants and hexagons.
 ///
 /// These are the objects of the theory behind `register_hyperbolic` (Shi et al. 2013, section 3). The sliced surface
 /// has one hyperbolic metric with geodesic boundary, which lays it out in the Poincaré disk. Closed geodesics divide
@@ -212,9 +233,9 @@ impl HyperbolicStructure {
 /// ----------
 /// vertices : (n, 3) real array
 ///     Positions, any unit. Or a Surface, without `faces`.
-/// faces : (m, 3) integer array
+/// faces : (m, 3) int array
 ///     Triangles: one component without handles, closed or with boundary loops.
-/// curves : list of (k,) integer arrays
+/// curves : list of (k,) int arrays
 ///     Disjoint paths of vertices along edges, each of at least two edges, off the boundary; or whole boundary loops,
 ///     which are features in any case. There must be at least three features.
 /// metric : "newton" or "ricci_flow"

@@ -24,7 +24,7 @@ use crate::run::run;
 /// ----------
 /// vertices : (n, 3) real array
 ///     Positions, any unit.
-/// faces : (m, 3) integer array
+/// faces : (m, 3) int array
 ///     Triangles as vertex indices.
 ///
 /// Raises
@@ -109,8 +109,9 @@ impl Surface {
         self.handle.n_faces()
     }
 
-    /// The number of connected components. This and the properties below raise MeshError if the surface is no oriented
-    /// manifold.
+    /// The number of connected components.
+    ///
+    /// This and the properties below raise MeshError if the surface is no oriented manifold.
     #[getter]
     fn n_components(&self, py: Python<'_>) -> PyResult<usize> {
         self.of_topology(py, Topology::n_components)
@@ -151,7 +152,7 @@ impl Surface {
     ///
     /// Parameters
     /// ----------
-    /// seams : (k, 2) integer array, optional
+    /// seams : (k, 2) int array, optional
     ///     Edges to cut, each as its two vertices. Without seams the patches are the connected components.
     ///
     /// Returns
@@ -163,6 +164,13 @@ impl Surface {
     /// ------
     /// MeshError
     ///     A seam is no edge.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> square = authalic.Surface([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    /// >>> [len(patch.faces) for patch in square.cut(seams=[[0, 2]])]
+    /// [1, 1]
     #[pyo3(signature = (*, seams=None))]
     fn cut(&self, py: Python<'_>, seams: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Patch>> {
         patches(py, Given::Handle(self.handle.clone()), seams)
@@ -254,9 +262,9 @@ impl Patch {
 /// ----------
 /// vertices : (n, 3) real array
 ///     Positions, any unit. Or a Surface, without `faces`.
-/// faces : (m, 3) integer array
+/// faces : (m, 3) int array
 ///     Triangles as vertex indices.
-/// seams : (k, 2) integer array, optional
+/// seams : (k, 2) int array, optional
 ///     Edges to cut, each as its two vertices. Without seams the patches are the connected components.
 ///
 /// Returns

@@ -22,8 +22,10 @@ pub struct Untangled {
     moved: Py<PyArray1<i64>>,
     /// (k,) int64: the faces that were folded, ascending.
     folded_before: Py<PyArray1<i64>>,
-    /// "converged"; "stalled" if a face stays below the tolerance, though not folded; "cancelled" if vertices did not
-    /// return as far as they could. The map has no folds in any case.
+    /// "converged", "stalled" or "cancelled".
+    ///
+    /// It is stalled if a face stays below the tolerance, though not folded, and cancelled if vertices did not return
+    /// as far as they could. The map has no folds in any case.
     status: &'static str,
     /// The figures of the map, with mirrored components turned back.
     distortion: Py<Distortion>,
@@ -58,11 +60,11 @@ impl Untangled {
 /// Parameters
 /// ----------
 /// surface : Surface, or (vertices, faces)
-///     (n, 3) real and (m, 3) integer array: an orientable manifold of any number of components and boundary loops.
+///     (n, 3) real and (m, 3) int array: an orientable manifold of any number of components and boundary loops.
 /// image : (n, 2) or (n, 3) real array
 ///     The map of its vertices into the plane, or onto a sphere around the origin. A closed component needs the sphere,
 ///     and each tangle there must lie within a hemisphere.
-/// fixed : (k,) integer or (n,) bool array, optional
+/// fixed : (k,) int or (n,) bool array, optional
 ///     Vertices that stay in place, in addition to those of the boundary.
 /// tolerance : float
 ///     Least area, in [0, 1), of a face that was folded or lost area to a folded one, in units of its fair share: the

@@ -27,8 +27,9 @@ pub struct Certificates {
     cocycle_error: f64,
     /// The number of vertices that rounding has put beyond the boundary.
     outside: usize,
-    /// The harmonic energy over the target's area: near 1 for curves that fit, above 2 for a strained map; NaN
-    /// without a hyperbolic metric.
+    /// The harmonic energy over the target's area.
+    ///
+    /// It is near 1 for curves that fit, above 2 for a strained map, and NaN without a hyperbolic metric.
     energy_ratio: f64,
     /// (float, float): the largest curvature that the hyperbolic metrics of source and target have left.
     curvature: (f64, f64),

@@ -14,8 +14,9 @@ use crate::options::{choice, metrics, parse_iterations};
 use crate::run::run_with_preview;
 use crate::surface::Given;
 
-/// Registers two surfaces of genus 0 by landmark curves: a one-to-one map of the source onto the target that takes
-/// curve to curve.
+/// Registers two surfaces of genus 0 by landmark curves.
+///
+/// The result is a one-to-one map of the source onto the target that takes curve to curve.
 ///
 /// Both surfaces are sliced along the curves and given the hyperbolic metric in which all slits and boundary loops are
 /// geodesics. The hyperbolic harmonic map between them (Shi et al. 2013, by Newton's method) is a homeomorphism
@@ -24,15 +25,15 @@ use crate::surface::Given;
 /// Parameters
 /// ----------
 /// source : Surface, or (vertices, faces)
-///     (n, 3) real and (m, 3) integer array: one component without handles, closed or with boundary loops.
+///     (n, 3) real and (m, 3) int array: one component without handles, closed or with boundary loops.
 /// target : Surface, or (vertices, faces)
-///     (n_t, 3) real and (m_t, 3) integer array: a surface with as many boundary loops.
-/// source_curves : list of (k,) integer arrays
+///     (n_t, 3) real and (m_t, 3) int array: a surface with as many boundary loops.
+/// source_curves : list of (k,) int arrays
 ///     Disjoint paths of vertices along edges of the source, each of at least two edges. Open curves are matched from
 ///     start to end by shares of their length. Curves are closed if the first vertex is repeated at the end, or if an
 ///     edge joins the last vertex (of at least 16) to the first; they have neither start nor direction. Boundary loops
 ///     need not be given.
-/// target_curves : list of (k,) integer arrays
+/// target_curves : list of (k,) int arrays
 ///     Their partners on the target, in the same order.
 /// energy : "surface" or "harmonic"
 ///     What the map keeps: areas and angles, measured in space between the two surfaces, from the harmonic map on, with

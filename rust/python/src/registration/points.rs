@@ -13,7 +13,10 @@ use crate::options::choice;
 use crate::run::run_with_preview;
 use crate::surface::Given;
 
-/// Registers two disks: a map of the source onto the target that preserves areas and takes landmarks to landmarks.
+/// Registers two disks by landmarks.
+///
+/// The result is a one-to-one map of the source onto the target, boundary onto boundary. It keeps shapes, or with
+/// `energy="area"` areas, and takes landmarks to landmarks.
 ///
 /// Both surfaces are mapped to the unit disk, the source's landmarks are carried onto the target's without folding a
 /// face (Liu & Yueh 2023, section 6, by a descent of our own), and each vertex is located on the target.
@@ -21,19 +24,19 @@ use crate::surface::Given;
 /// Parameters
 /// ----------
 /// source : Surface, or (vertices, faces)
-///     (n, 3) real and (m, 3) integer array: a surface with one boundary loop and no handles.
+///     (n, 3) real and (m, 3) int array: a surface with one boundary loop and no handles.
 /// target : Surface, or (vertices, faces)
-///     (n_t, 3) real and (m_t, 3) integer array: such a surface.
-/// source_landmarks : (k,) integer array
+///     (n_t, 3) real and (m_t, 3) int array: such a surface.
+/// source_landmarks : (k,) int array
 ///     Vertices of the source, at least 1, none on the boundary.
-/// target_landmarks : (k,) integer array
+/// target_landmarks : (k,) int array
 ///     Their partners on the target, in the same order.
-/// weight : float
-///     λ > 0, the initial weight of the landmark penalty; it grows tenfold until the landmarks meet.
 /// energy : "surface" or "area"
 ///     What the map keeps: areas and angles, measured in space between the two surfaces, from a map that keeps angles
 ///     on; or areas alone, as in the paper. Default "surface": areas alone do not say where what lies between landmarks
 ///     goes.
+/// weight : float
+///     Initial weight λ > 0 of the landmark penalty, which grows tenfold until the landmarks meet.
 /// area_weight : float
 ///     With "surface" the exponent ≥ 0 of the area factor (d + 1/d)/2 of each face, d = σ₁ σ₂ with the singular values
 ///     of the map of the face.
@@ -134,8 +137,10 @@ pub fn register_disks(
     Registration::new(py, finished)
 }
 
-/// Registers two closed surfaces: a map of the source onto the target that preserves areas and takes landmarks to
-/// landmarks.
+/// Registers two closed surfaces by landmarks or features.
+///
+/// The result is a one-to-one map of the source onto the target. It keeps shapes, or with `energy="area"` areas, and
+/// takes landmarks to landmarks.
 ///
 /// Both surfaces are mapped to the unit sphere, the landmarks of both are carried to the middle of each pair without
 /// folding a face (Sutti & Yueh 2024, section 6.6, by a descent of our own), and each vertex is located on the target.
@@ -143,19 +148,19 @@ pub fn register_disks(
 /// Parameters
 /// ----------
 /// source : Surface, or (vertices, faces)
-///     (n, 3) real and (m, 3) integer array: a closed surface without handles.
+///     (n, 3) real and (m, 3) int array: a closed surface without handles.
 /// target : Surface, or (vertices, faces)
-///     (n_t, 3) real and (m_t, 3) integer array: such a surface. If it is inside out beside the source, it is turned.
-/// source_landmarks : (k,) integer array, optional
+///     (n_t, 3) real and (m_t, 3) int array: such a surface. If it is inside out beside the source, it is turned.
+/// source_landmarks : (k,) int array, optional
 ///     Vertices of the source, at least 2; with `features` any number.
-/// target_landmarks : (k,) integer array, optional
+/// target_landmarks : (k,) int array, optional
 ///     Their partners on the target, in the same order.
-/// weight : float
-///     λ > 0, the initial weight of the landmark penalty; it grows tenfold until the landmarks meet.
 /// energy : "surface" or "area"
 ///     What the map keeps: areas and angles, measured in space between the two surfaces, from a map that keeps angles
 ///     on; or areas alone, as in the paper. Default "surface": areas alone do not say where what lies between landmarks
 ///     goes.
+/// weight : float
+///     Initial weight λ > 0 of the landmark penalty, which grows tenfold until the landmarks meet.
 /// area_weight : float
 ///     With "surface" the exponent ≥ 0 of the area factor (d + 1/d)/2 of each face, d = σ₁ σ₂ with the singular values
 ///     of the map of the face.

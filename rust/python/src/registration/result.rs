@@ -31,8 +31,9 @@ pub struct Registration {
     /// (n, 3) float64: the weights of that face's corners, nonnegative, with sum 1.
     #[pyo3(get)]
     barycentric: Py<PyArray2<f64>>,
-    /// (n, 2) or (n, 3) float64: the source vertices in the parameter domain, the unit disk or sphere, with the
-    /// landmarks in place. The boundary of a disk lies on that of the target's image, a polygon.
+    /// (n, 2) or (n, 3) float64: the source vertices in the parameter domain, landmarks in place.
+    ///
+    /// The domain is the unit disk or sphere. The boundary of a disk lies on that of the target's image, a polygon.
     #[pyo3(get)]
     registered: Reals,
     /// (n_t, 2) or (n_t, 3) float64: the target vertices in the parameter domain.
@@ -44,44 +45,57 @@ pub struct Registration {
     /// (m_t, 3) int64: the target faces as oriented.
     #[pyo3(get)]
     target_faces: Py<PyArray2<i64>>,
-    /// DiskMap or SphereMap: the map of the source alone. By curves: a rough map onto the sphere, which may have folds
-    /// and has no iterations.
+    /// DiskMap or SphereMap: the map of the source alone.
+    ///
+    /// By curves: a rough map onto the sphere, which may have folds and has no iterations.
     #[pyo3(get)]
     source_map: Py<PyAny>,
-    /// DiskMap or SphereMap: the map of the target alone. By curves: a rough map onto the sphere, which may have folds
-    /// and has no iterations.
+    /// DiskMap or SphereMap: the map of the target alone.
+    ///
+    /// By curves: a rough map onto the sphere, which may have folds and has no iterations.
     #[pyo3(get)]
     target_map: Py<PyAny>,
-    /// (k,) float64: the final distance of each landmark from its partner, in the parameter domain of radius 1. By
-    /// curves: the largest distance of each curve's vertices from its partner, as a fraction of the target's size.
+    /// (k,) float64: the final distance of each landmark from its partner.
+    ///
+    /// It is taken in the parameter domain of radius 1. By curves: the largest distance of each curve's vertices from
+    /// its partner, as a fraction of the target's size.
     #[pyo3(get)]
     landmark_error: Py<PyArray1<f64>>,
-    /// (j,) int64: the pairs that did not meet: farther apart than 1e-3 in the domain, or than .5 % of the target's
-    /// size on the target. By curves: farther than 1e-9 of the target's size.
+    /// (j,) int64: the pairs that did not meet.
+    ///
+    /// They are farther apart than 1e-3 in the domain, or than .5 % of the target's size on the target. By curves:
+    /// farther than 1e-9 of the target's size.
     #[pyo3(get)]
     missed: Py<PyArray1<i64>>,
-    /// (j,) int64: vertices of the source's boundary that lie a little inside the target, since faces between them would
-    /// have no area on a straight side of its boundary; all others lie on its boundary. Empty but for disks.
+    /// (j,) int64: vertices of the source's boundary that lie a little inside the target.
+    ///
+    /// Faces between them would have no area on a straight side of the target's boundary; all others lie on its
+    /// boundary. Empty but for disks.
     #[pyo3(get)]
     off_boundary: Py<PyArray1<i64>>,
-    /// (j,) int64: with `fill_holes`, the source vertices whose positions lie on a filling of the target's holes. Their
-    /// `triangles` and `barycentric` are the nearest place on the target itself, from where `pull` takes data.
+    /// (j,) int64: with `fill_holes`, the source vertices that lie on a filling of the target's holes.
+    ///
+    /// Their `triangles` and `barycentric` are the nearest place on the target itself, from where `pull` takes data.
     #[pyo3(get)]
     in_holes: Py<PyArray1<i64>>,
-    /// "converged", "landmarks_missed", "max_iterations", "stalled" or "cancelled". No face is folded in
-    /// any case, except with the solver "heat", where `certificates` tell.
+    /// "converged", "landmarks_missed", "max_iterations", "stalled" or "cancelled".
+    ///
+    /// No face is folded in any case, except with the solver "heat", where `certificates` tell.
     #[pyo3(get)]
     status: &'static str,
-    /// The figures of `registered` against the source's areas. By curves: the figures of `positions` against the
-    /// source, in space.
+    /// The figures of `registered` against the source's areas.
+    ///
+    /// By curves: the figures of `positions` against the source, in space.
     #[pyo3(get)]
     distortion: Py<Distortion>,
-    /// The figures of `target_registered` against the target's areas. By curves: the figures of the inverse map, in
-    /// space.
+    /// The figures of `target_registered` against the target's areas.
+    ///
+    /// By curves: the figures of the inverse map, in space.
     #[pyo3(get)]
     target_distortion: Py<Distortion>,
-    /// (m,) float64: J, the area of each source face's image on the target over the face's own, with the source
-    /// scaled to the area of its image; 1 where g preserves areas.
+    /// (m,) float64: the area of each source face's image on the target over the face's own.
+    ///
+    /// The source is scaled to the area of its image; 1 is where areas are preserved.
     #[pyo3(get)]
     area_ratio: Py<PyArray1<f64>>,
     /// (m,) float64: max(J, 1/J) of `area_ratio` J, at least 1; infinite where the image has no area.
@@ -93,15 +107,17 @@ pub struct Registration {
     /// Certificates or None: the proof that a map by curves is one-to-one; None for a map by points.
     #[pyo3(get)]
     certificates: Option<Py<Certificates>>,
-    /// list of RegistrationWarning: signs that the curves are wrong; empty for a map by points.
+    /// List of RegistrationWarning: signs that the curves are wrong; empty for a map by points.
     #[pyo3(get)]
     warnings: Vec<Py<PyAny>>,
-    /// list of (k,) float64: the harmonic energy at the start and after each step, for each piece with a hyperbolic
-    /// metric; empty for a map by points.
+    /// List of (k,) float64: the harmonic energy at the start and after each step.
+    ///
+    /// There is one array for each piece with a hyperbolic metric, and none for a map by points.
     #[pyo3(get)]
     energies: Vec<Py<PyArray1<f64>>>,
-    /// Iterations of carrying the landmarks, without those of `source_map` and `target_map`. By curves: the steps of
-    /// the harmonic map.
+    /// Iterations of carrying the landmarks, without those of `source_map` and `target_map`.
+    ///
+    /// By curves: the steps of the harmonic map.
     #[pyo3(get)]
     iterations: usize,
     /// Wall time of the call.
@@ -279,6 +295,20 @@ impl Registration {
     ///     The values have another shape, or without `nearest` are no real numbers.
     /// ValueError
     ///     `smooth` goes with values per corner or with `nearest`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    /// >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]
+    /// >>> large = [[3 * x for x in corner] for corner in corners]
+    /// >>> registration = authalic.register_spheres(
+    /// ...     (corners, faces), (large, faces), source_landmarks=[0, 1], target_landmarks=[0, 1]
+    /// ... )
+    /// >>> registration.pull([1.0, 2.0, 3.0, 4.0]).round(6).tolist()
+    /// [1.0, 2.0, 3.0, 4.0]
+    /// >>> registration.pull([5, 6, 7, 8], nearest=True).tolist()
+    /// [5, 6, 7, 8]
     #[pyo3(signature = (values, *, per=None, nearest=false, smooth=false))]
     fn pull(
         &self,
@@ -330,7 +360,7 @@ impl Registration {
     /// ----------
     /// points : (k, 3) real array
     ///     In the source's coordinates.
-    /// pieces : (k,) integer array, optional
+    /// pieces : (k,) int array, optional
     ///     Points with the same number, from 0, are a piece. A small piece moves by one similarity, the best one for
     ///     the surface around it, so that it keeps its shape. Points of a large piece, points with negative numbers and
     ///     without `pieces` all points bend with the surface; points on the surface go where it goes.
@@ -348,6 +378,18 @@ impl Registration {
     ///     An array has another shape, or points are not finite.
     /// ValueError
     ///     `rigid_size` is negative or NaN.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    /// >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]
+    /// >>> large = [[3 * x for x in corner] for corner in corners]
+    /// >>> registration = authalic.register_spheres(
+    /// ...     (corners, faces), (large, faces), source_landmarks=[0, 1], target_landmarks=[0, 1]
+    /// ... )
+    /// >>> (registration.follow([[0, 0, 2]]).round(6) + 0.0).tolist()
+    /// [[0.0, 0.0, 6.0]]
     #[pyo3(signature = (points, *, pieces=None, rigid_size=0.25))]
     fn follow(
         &self,
@@ -378,6 +420,18 @@ impl Registration {
     /// -------
     /// (n, 3, 3) float64 array
     ///     A rotation times a scale for each source vertex.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    /// >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]
+    /// >>> large = [[3 * x for x in corner] for corner in corners]
+    /// >>> registration = authalic.register_spheres(
+    /// ...     (corners, faces), (large, faces), source_landmarks=[0, 1], target_landmarks=[0, 1]
+    /// ... )
+    /// >>> registration.local_similarities()[0].diagonal().round(3).tolist()
+    /// [0.333, 0.333, 0.333]
     fn local_similarities(&self, py: Python<'_>) -> PyResult<Py<PyArray3<f64>>> {
         let finished = self.finished.clone();
         Ok(from_array(py, run(py, None, move |_| finished.correspondence().local_similarities())?))
@@ -388,6 +442,18 @@ impl Registration {
     /// Returns
     /// -------
     /// Registration
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    /// >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]
+    /// >>> large = [[3 * x for x in corner] for corner in corners]
+    /// >>> registration = authalic.register_spheres(
+    /// ...     (corners, faces), (large, faces), source_landmarks=[0, 1], target_landmarks=[0, 1]
+    /// ... )
+    /// >>> registration.inverse().positions.max().round(6).item()
+    /// 1.0
     fn inverse(&self, py: Python<'_>) -> PyResult<Self> {
         let finished = self.finished.clone();
         Self::new(py, run(py, None, move |observer| finished.inverse(observer))?)
@@ -411,6 +477,19 @@ impl Registration {
     /// ------
     /// MeshError
     ///     The values have another shape or are no real numbers.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    /// >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]
+    /// >>> large = [[3 * x for x in corner] for corner in corners]
+    /// >>> registration = authalic.register_spheres(
+    /// ...     (corners, faces), (large, faces), source_landmarks=[0, 1], target_landmarks=[0, 1]
+    /// ... )
+    /// >>> correlation, difference = registration.compare([1, 2, 3, 4], [1, 2, 3, 4])
+    /// >>> round(correlation, 6), round(difference, 6)
+    /// (1.0, 0.0)
     fn compare(
         &self,
         py: Python<'_>,

@@ -6,14 +6,16 @@ use pyo3::prelude::*;
 
 use crate::arrays::from_array;
 
-/// How far a registration stretches and shrinks each face, with both surfaces scaled to one area. Means and shares are
-/// by area of the source.
+/// How far a registration stretches and shrinks each face, with both surfaces scaled to one area.
+///
+/// Means and shares are by area of the source.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Strain {
     /// (m, 2) float64: the singular values σ₁ ≥ σ₂ of g on each source face.
     sigma: Py<PyArray2<f64>>,
-    /// (m,) float64: the symmetric Dirichlet energy (σ₁² + σ₂² + σ₁⁻² + σ₂⁻²)/4 of each source face: 1 for an isometry,
-    /// infinite where the image has no area.
+    /// (m,) float64: the symmetric Dirichlet energy of each source face, over 4.
+    ///
+    /// It is (σ₁² + σ₂² + σ₁⁻² + σ₂⁻²)/4: 1 for an isometry, infinite where the image has no area.
     symmetric_dirichlet: Py<PyArray1<f64>>,
     /// Mean of symmetric_dirichlet.
     mean: f64,
@@ -23,7 +25,7 @@ pub struct Strain {
     p95: f64,
     /// The share of the area in faces that are stretched or shrunk over 2×: σ₁ > 2 or σ₂ < 1/2.
     stretched: f64,
-    /// int or None: the pair (or curve) with the highest strain around it; None without landmarks.
+    /// Int or None: the pair (or curve) with the highest strain around it; None without landmarks.
     worst_landmark: Option<usize>,
 }
 

@@ -149,7 +149,7 @@ def test_scripts_that_fail_in_a_window_are_run_once_more(monkeypatch, tmp_path):
 ALL = {step.name for step in steps.STEPS}
 IN_BLENDER = {"blender-4.2", "blender-5"}
 INSTALLED = IN_BLENDER | {"window"}
-OF_THE_WHEEL = {"wheel", "types", "python", "extension"} | INSTALLED
+OF_THE_WHEEL = {"wheel", "types", "docstrings", "python", "extension"} | INSTALLED
 
 
 @pytest.mark.parametrize(
@@ -157,6 +157,8 @@ OF_THE_WHEEL = {"wheel", "types", "python", "extension"} | INSTALLED
     [
         ("README.md", {"python"}),
         ("docs/comparison.jpg", {"python"}),
+        ("docs/conf.py", {"ruff", "python"}),
+        ("docs/theory/energy.md", {"python"}),
         ("docs/blender.md", {"python", "extension"} | IN_BLENDER),
         ("rust/core/src/disk/mod.rs", ALL),
         ("rust/core/README.md", ALL),
@@ -172,9 +174,13 @@ OF_THE_WHEEL = {"wheel", "types", "python", "extension"} | INSTALLED
         ("tests/gui/driver.py", {"ruff", "types", "window"}),
         ("tests/gui/buttons.py", {"ruff", "types", "window"}),
         ("tests/test_scripts.py", {"ruff", "python"}),
+        ("tests/test_docstrings.py", {"ruff", "docstrings"}),
         ("scripts/bench", {"ruff", "python"}),
+        ("scripts/docs", {"ruff", "python"}),
         ("scripts/lib/bench/tables/main.py", {"ruff", "python"}),
         ("scripts/requirements/peer-lapy.txt", set()),
+        ("scripts/requirements/docs.txt", set()),
+        ("scripts/requirements/docstrings.txt", {"docstrings"}),
         ("scripts/requirements/dev.txt", ALL),
         ("scripts/lib/steps.py", ALL),
         ("Cargo.lock", ALL),

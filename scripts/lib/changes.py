@@ -14,7 +14,7 @@ Selection = Dict[str, Tuple[str, ...]]
 
 BLENDER = ("blender-4.2", "blender-5")
 INSTALLED = (*BLENDER, "window")
-BUILT = ("wheel", "types", "python", "extension", *INSTALLED)
+BUILT = ("wheel", "types", "docstrings", "python", "extension", *INSTALLED)
 RUST = ("rustfmt", "clippy", "rust", "rustdoc")
 EVERYTHING = ("environments", *RUST, "ruff", *BUILT)
 STRUCTURE = ("tests/test_architecture.py", "tests/test_docs.py")
@@ -43,16 +43,21 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("tests/gui/*.py", {"ruff": (), "types": (), "window": ("{file}",)}),
     ("tests/gui/*.sh", _whole("window")),
     ("tests/test_architecture.py", {"ruff": (), "python": STRUCTURE}),
+    ("tests/test_docstrings.py", _whole("ruff", "docstrings")),
     ("tests/test_*.py", {"ruff": (), "python": ("{file}",)}),
     ("scripts/lib/bench/*", {"ruff": (), "python": PROJECT}),
     ("scripts/lib/demo/*", {"ruff": (), "python": PROJECT}),
     ("scripts/examples/*", {"ruff": (), "python": PROJECT}),
     ("scripts/bench", {"ruff": (), "python": PROJECT}),
     ("scripts/build", {"ruff": (), "python": PROJECT}),
+    ("scripts/docs", {"ruff": (), "python": PROJECT}),
     ("scripts/demo", {"ruff": (), "python": PROJECT}),
+    ("scripts/requirements/docstrings.txt", _whole("docstrings")),
+    ("scripts/requirements/docs.txt", {}),
     ("scripts/requirements/peer-*", {}),
     # The manual, which the zip holds.
     ("docs/blender.md", {"python": PROJECT, "extension": (), **dict.fromkeys(BLENDER, _OF_MANUAL)}),
+    ("docs/*.py", {"ruff": (), "python": PROJECT}),
     ("docs/*", {"python": PROJECT}),
     ("*.md", {"python": PROJECT}),
     ("*", _whole(*EVERYTHING)),

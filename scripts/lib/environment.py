@@ -46,6 +46,11 @@ def dev() -> Environment:
     return _ensure("dev", "dev", *pythons.find(*_newest_supported()))
 
 
+def docs() -> Environment:
+    """The environment that builds the documentation."""
+    return _ensure("docs", "docs", *pythons.find(*_newest_supported()))
+
+
 def blender_oldest() -> Environment:
     """Blender 4.2 LTS as a Python module."""
     return _ensure_blender("bpy-4.2", "bpy-4.2", *pythons.find("3.11"))

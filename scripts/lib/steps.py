@@ -19,11 +19,20 @@ from shell import OUT, CommandFailed, run
 LOGS = OUT / "test"
 CARGO_OPTIONS = ("--locked", "--release", "--workspace", "--features", "metis")
 """The wheel's profile and features everywhere: the tests run real solves, and no crate is built twice."""
-_PYTHON_TESTS = ("tests", "--ignore=tests/blender", "--ignore=tests/gui")
+_DOCSTRINGS = "tests/test_docstrings.py"
+_PYTHON_TESTS = ("tests", "--ignore=tests/blender", "--ignore=tests/gui", f"--ignore={_DOCSTRINGS}")
 _BLENDER_TESTS = ("tests/blender",)
 _SIDE_BY_SIDE = ("--numprocesses=2", "--dist=worksteal")
 """Small meshes keep one processor busy; more processes would only be in the way of large ones."""
-_PYTHON_SOURCES = ("addon", "scripts", "tests", "rust/python")
+_PYTHON_SOURCES = (
+    "addon",
+    "docs/conf.py",
+    "docs/_extensions",
+    "docs/examples",
+    "scripts",
+    "tests",
+    "rust/python",
+)
 
 _BUILDING = Lock()
 """Keeps steps that run side by side from building the same file."""
@@ -128,6 +137,12 @@ def check_types(log: Path) -> Count:
     return Count()
 
 
+def check_docstrings(log: Path) -> Count:
+    install_wheel(log)
+    environment.add(environment.dev(), "docstrings")
+    return _pytest(environment.dev(), (_DOCSTRINGS,), {}, log)
+
+
 def test_python(log: Path, places: tuple[str, ...] = _PYTHON_TESTS) -> Count:
     install_wheel(log)
     return _pytest(environment.dev(), places, {}, log, _SIDE_BY_SIDE)
@@ -165,6 +180,7 @@ STEPS = (
     Step("ruff", "formatting and lints of the Python code", check_python_style, "documentation"),
     Step("wheel", "build of the wheel, installed into .venv/dev", install_wheel),
     Step("types", "stub against the built module, types of the package and of the extension", check_types),
+    Step("docstrings", "rules and examples of the docstrings of the package", check_docstrings),
     Step("python", "tests of the Python package and of the project's structure", test_python),
     Step("extension", "build and validation of the extension zip", build_extension),
     Step("blender-4.2", "tests of the installed extension in Blender 4.2", test_blender_oldest, "blender"),

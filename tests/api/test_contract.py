@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Names, signatures, results and documentation of the package."""
 
-import doctest
 import inspect
 import tomllib
 from pathlib import Path
@@ -258,16 +257,6 @@ def test_the_docstrings_have_all_sections_and_name_all_parameters(name):
         assert section in text
     for parameter in [*POSITIONAL[name], *KEYWORDS[name]]:
         assert f"\n{parameter} : " in text
-
-
-@pytest.mark.parametrize("name", ["", "Surface", *FUNCTIONS])
-def test_the_examples_in_the_docstrings_run(name):
-    subject = getattr(authalic, name) if name else authalic
-    test = doctest.DocTestParser().get_doctest(subject.__doc__, {}, name or "authalic", None, 0)
-    report = []
-    outcome = doctest.DocTestRunner(verbose=False).run(test, out=report.append)
-    assert outcome.attempted >= 3
-    assert outcome.failed == 0, "".join(report)
 
 
 def test_every_attribute_of_the_results_is_documented():

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""The docstrings of the package: they keep numpydoc's rules, and their examples run."""
+
+import doctest
+import inspect
+import warnings
+
+import pytest
+
+import authalic
+
+EVERYWHERE = {"ES01", "GL02", "SA01"}
+"""Rules that count nowhere: an extended summary, the line of the closing quotes, a section "See Also".
+
+The native module's docstrings have no quotes, and short ones need no more than their summary.
+"""
+OF_CALLABLES = {"EX01"}
+"""Rules that count for what can be called: an example."""
+
+
+def public_names() -> list[str]:
+    """Every documented name, from the root of the package: functions, classes, and what classes have."""
+    documented = [
+        name
+        for name in authalic.__all__
+        if inspect.isclass(getattr(authalic, name)) or inspect.isroutine(getattr(authalic, name))
+    ]
+    classes = [name for name in documented if inspect.isclass(getattr(authalic, name))]
+    members = [f"{name}.{member}" for name in classes for member in vars(getattr(authalic, name))]
+    return documented + [name for name in members if not name.split(".")[1].startswith("_")]
+
+
+def documented(name: str) -> object:
+    subject: object = authalic
+    for part in name.split("."):
+        subject = getattr(subject, part)
+    return subject
+
+
+def broken_rules(name: str) -> list[str]:
+    validate = pytest.importorskip("numpydoc.validate").validate
+    with warnings.catch_warnings(action="error"):
+        errors = validate(f"authalic.{name}")["errors"]
+    ignored = EVERYWHERE if inspect.isroutine(documented(name)) else EVERYWHERE | OF_CALLABLES
+    return [f"{code}: {what}" for code, what in errors if code not in ignored]
+
+
+@pytest.mark.parametrize("name", public_names())
+def test_docstrings_keep_the_rules_of_numpydoc(name):
+    assert not broken_rules(name)
+
+
+def test_a_docstring_that_breaks_rules_is_found(monkeypatch):
+    def scale(vertices, factor):
+        """scales
+
+        Parameters
+        ----------
+        vertices : (n, 3) integer array
+            Positions.
+        """
+
+    monkeypatch.setattr(authalic, "scale", scale, raising=False)
+    codes = {problem[:4] for problem in broken_rules("scale")}
+    assert codes == {"SS02", "SS03", "SS05", "PR01", "PR06", "EX01"}
+
+
+def test_every_kind_of_name_is_validated():
+    names = public_names()
+    assert {"disk_map", "Surface", "MeshError", "Surface.cut", "SphereMap.positions"} <= set(names)
+    assert not {"__version__", "ERROR_KINDS"} & set(names)
+
+
+@pytest.mark.parametrize("name", ["", *public_names()])
+def test_the_examples_in_the_docstrings_run(name):
+    text = inspect.getdoc(documented(name) if name else authalic) or ""
+    test = doctest.DocTestParser().get_doctest(text, {}, name or "authalic", None, 0)
+    report: list[str] = []
+    outcome = doctest.DocTestRunner(verbose=False).run(test, out=report.append)
+    assert outcome.failed == 0, "".join(report)
+    assert outcome.attempted >= 3 or not (name == "" or inspect.isroutine(documented(name)))

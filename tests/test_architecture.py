@@ -54,6 +54,10 @@ ADDON_ROOMS = (
 )
 ADDON_RANK = {room: rank for rank, rooms in enumerate(ADDON_ROOMS) for room in rooms}
 
+# The folders of the package, lowest first. Nothing outside uses them, so that `import authalic` stays small.
+PACKAGE_ROOMS = ("io", "runs", "batch", "cli")
+OPTIONAL_PACKAGES = {"click", "rich", "trimesh", "meshio", "nibabel", "dask", "distributed", "pyarrow"}
+
 # Python code that knows nothing of Blender.
 WITHOUT_BLENDER = {"messages", "surfaces", "registration", "bridge"}
 BLENDER_MODULES = {"bpy", "bmesh", "mathutils", "gpu", "blf", "bpy_extras", "gpu_extras"}
@@ -207,6 +211,24 @@ def test_package_knows_no_blender() -> None:
     for file in (BINDINGS / "authalic").glob("*.py*"):
         if file.suffix in (".py", ".pyi"):
             assert not absolute_imports(file) & {"bpy", "bmesh", "mathutils"}, file
+
+
+@pytest.mark.parametrize("room", PACKAGE_ROOMS)
+def test_package_uses_lower_rooms_only(room: str) -> None:
+    house = BINDINGS / "authalic"
+    higher = PACKAGE_ROOMS[PACKAGE_ROOMS.index(room) + 1 :]
+    for file in python_files(house / room):
+        used = {used_file.relative_to(house).parts[0] for used_file in files_imported(file, house)}
+        assert not used & {*higher, "__init__.py"}, file
+
+
+def test_the_package_itself_uses_no_optional_package() -> None:
+    for file in (BINDINGS / "authalic").glob("*.py"):
+        if file.name != "__main__.py":
+            assert not absolute_imports(file) & OPTIONAL_PACKAGES, file
+            assert not {used.parent.name for used in files_imported(file, file.parent)} & {*PACKAGE_ROOMS}, (
+                file
+            )
 
 
 def test_only_the_bridge_imports_authalic() -> None:

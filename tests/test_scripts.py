@@ -169,6 +169,8 @@ OF_THE_WHEEL = {"wheel", "types", "docstrings", "python", "extension"} | INSTALL
         ("addon/blender_manifest.toml.in", {"ruff", "types", "python", "extension"} | INSTALLED),
         ("tests/api/test_cut.py", {"ruff", "python"}),
         ("tests/api/oracle.py", {"ruff", "python"}),
+        ("tests/cli/test_formats.py", {"ruff", "python"}),
+        ("tests/cli/conftest.py", {"ruff", "python"}),
         ("tests/blender/test_modal.py", {"ruff", "types"} | IN_BLENDER),
         ("tests/blender/meshes.py", {"ruff", "types"} | IN_BLENDER),
         ("tests/gui/driver.py", {"ruff", "types", "window"}),

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""One surface onto another: register."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from . import options
+from .options import Frame
+
+
+@click.command()
+@click.argument("source", type=options.existing)
+@click.argument("target", type=options.existing)
+@click.argument("output", type=options.writable_file)
+@click.option(
+    "--landmarks",
+    type=options.existing,
+    help="Text: a vertex of SOURCE and one of TARGET in each row, counted from 0.",
+)
+@click.option(
+    "--curves",
+    type=options.existing,
+    help='JSON: {"source": [[vertices], ...], "target": [[vertices], ...]}; a registration by curves.',
+)
+@click.option(
+    "--features",
+    type=(options.existing, options.existing),
+    default=None,
+    help="Values at the vertices of SOURCE and of TARGET to be laid over each other.",
+)
+@click.option(
+    "--pull",
+    type=(options.existing, options.writable_file),
+    default=None,
+    help="Values at the vertices of TARGET, and the file for them at those of SOURCE.",
+)
+@click.option("--area-weight", type=float, help="[default: 1]")
+@click.option("--angle-weight", type=float, help="[default: 1]")
+@options.common
+def register(
+    source: Path,
+    target: Path,
+    output: Path,
+    landmarks: Path | None,
+    curves: Path | None,
+    features: tuple[Path, Path] | None,
+    pull: tuple[Path, Path] | None,
+    as_json: bool,
+    quiet: bool,
+    threads: int | None,
+    input_format: str | None,
+    output_format: str | None,
+    **arguments: Any,
+) -> None:
+    """Register a SOURCE surface to a TARGET surface.
+
+    OUTPUT has the faces of SOURCE and its vertices at their places on TARGET; as npz also the arrays
+    triangles and barycentric, which name the place of each vertex.
+    """
+    from ..runs.register import register_run
+
+    if landmarks is not None and curves is not None:
+        raise click.UsageError("give --landmarks or --curves, not both")
+    frame = Frame(as_json, quiet, threads)
+    with frame.progress("register") as progress:
+        record = register_run(
+            source,
+            target,
+            output,
+            landmarks=landmarks,
+            curves=curves,
+            features=features,
+            pull=pull,
+            input_format=input_format,
+            output_format=output_format,
+            options=arguments,
+            progress=progress,
+        )
+    frame.show(record, source, output)
+
+
+COMMANDS = (register,)

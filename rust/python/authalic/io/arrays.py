@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""numpy's files, and text with one row a vertex."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from .mesh import MeshData, Reals
+
+_SEPARATORS = {",", ";", "\t"}
+
+
+def read_mesh(path: Path, name: str) -> MeshData:
+    """npz with the arrays `vertices` and `faces`, and where there are UVs `uv` and `uv_faces`."""
+    with np.load(path, allow_pickle=False) as arrays:
+        absent = {"vertices", "faces"} - set(arrays)
+        if absent:
+            raise ValueError(f"it lacks the arrays {sorted(absent)}; it has {sorted(arrays)}")
+        return MeshData(arrays["vertices"], arrays["faces"], arrays.get("uv"), arrays.get("uv_faces"))
+
+
+def write_mesh(path: Path, mesh: MeshData, name: str) -> None:
+    """Also the further arrays in the metadata under "arrays", and what is there under "record", as JSON."""
+    arrays = {"vertices": mesh.vertices, "faces": mesh.faces, **mesh.metadata.get("arrays", {})}
+    if mesh.uv is not None and mesh.uv_faces is not None:
+        arrays |= {"uv": mesh.uv, "uv_faces": mesh.uv_faces}
+    if "record" in mesh.metadata:
+        arrays["record"] = np.array(json.dumps(mesh.metadata["record"]))
+    with open(path, "wb") as file:
+        np.savez_compressed(file, **arrays)
+
+
+def read_values(path: Path, name: str) -> Reals:
+    if name == "npy":
+        return np.asarray(np.load(path, allow_pickle=False), np.float64)
+    if name == "npz":
+        return _only_array(path)
+    return read_table(path)
+
+
+def write_values(path: Path, values: Reals, name: str) -> None:
+    with open(path, "wb") as file:
+        if name == "npy":
+            np.save(file, values)
+        elif name == "npz":
+            np.savez_compressed(file, values=values)
+        else:
+            rows = values.reshape(len(values), -1).tolist()
+            file.write("".join(",".join(map(repr, row)) + "\n" for row in rows).encode())
+
+
+def read_table(path: Path) -> Reals:
+    """Rows of numbers between commas, semicolons, tabs or spaces, below at most one line of words."""
+    lines = [line for line in path.read_text(encoding="utf-8-sig").splitlines() if line.strip()]
+    for separator in _SEPARATORS:
+        lines = [line.replace(separator, " ") for line in lines]
+    if lines and not _is_numbers(lines[0]):
+        lines = lines[1:]
+    rows = np.array([[float(word) for word in line.split()] for line in lines])
+    return rows[:, 0] if rows.ndim == 2 and rows.shape[1] == 1 else rows
+
+
+def _is_numbers(line: str) -> bool:
+    try:
+        return bool([float(word) for word in line.split()])
+    except ValueError:
+        return False
+
+
+def _only_array(path: Path) -> Reals:
+    with np.load(path, allow_pickle=False) as arrays:
+        name = "values" if "values" in arrays else next(iter(arrays))
+        if name != "values" and len(arrays) > 1:
+            raise ValueError(f"it has several arrays and none named values: {sorted(arrays)}")
+        return np.asarray(arrays[name], np.float64)

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""What a mesh file holds."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Reals = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@dataclass(eq=False)
+class MeshData:
+    """A triangle mesh as in a file, unchecked: `authalic.Surface(mesh.vertices, mesh.faces)` checks it.
+
+    Parameters
+    ----------
+    vertices : (n, 3) real array
+        Positions.
+    faces : (m, 3) int array
+        Triangles.
+    uv : (k, 2) real array, optional
+        Points of a UV map.
+    uv_faces : (m, 3) int array, optional
+        The UV point of each corner. Default: `faces`, which is right with one point for each vertex.
+    metadata : mapping, optional
+        What the format's family of files keeps beside the arrays, e.g. FreeSurfer's volume geometry. It is
+        written again into files of the same family.
+
+    Examples
+    --------
+    >>> from authalic.io import MeshData
+    >>> MeshData([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).vertices.dtype
+    dtype('float64')
+    """
+
+    vertices: Reals
+    faces: Indices
+    uv: Reals | None = None
+    uv_faces: Indices | None = None
+    metadata: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.vertices = _rows(self.vertices, 3, np.float64)
+        self.faces = _rows(self.faces, 3, np.int64)
+        if self.uv is not None:
+            self.uv = _rows(self.uv, 2, np.float64)
+            self.uv_faces = self.faces if self.uv_faces is None else _rows(self.uv_faces, 3, np.int64)
+
+    def split_at_seams(self) -> "MeshData":
+        """The mesh with one UV point for each vertex, for formats that know no other UVs.
+
+        Returns
+        -------
+        MeshData
+            Vertices on seams occur once for each UV point. The mesh itself if no vertex has two points.
+
+        Examples
+        --------
+        >>> from authalic.io import MeshData
+        >>> vertices, uv = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], [[0, 0], [1, 0], [0, 1], [2, 2]]
+        >>> faces, uv_faces = [[0, 1, 2], [1, 3, 2]], [[0, 1, 2], [3, 1, 0]]
+        >>> mesh = MeshData(vertices, faces, uv, uv_faces)
+        >>> mesh.split_at_seams().vertices.shape
+        (6, 3)
+        """
+        if self.uv is None or self.uv_faces is None or np.array_equal(self.faces, self.uv_faces):
+            return self
+        corners = np.stack([self.faces.ravel(), self.uv_faces.ravel()], axis=1)
+        pairs, of_corner = np.unique(corners, axis=0, return_inverse=True)
+        faces = of_corner.reshape(-1, 3)
+        return MeshData(self.vertices[pairs[:, 0]], faces, self.uv[pairs[:, 1]], faces, self.metadata)
+
+
+def fans(polygons: list[list[int]]) -> Indices:
+    """The triangles of polygons, in their order, each a fan around its first corner."""
+    triangles = [(p[0], p[k], p[k + 1]) for p in polygons for k in range(1, len(p) - 1)]
+    return np.array(triangles, np.int64).reshape(-1, 3)
+
+
+def _rows(values: ArrayLike, width: int, dtype: type) -> NDArray[Any]:
+    array: NDArray[Any] = np.ascontiguousarray(values, dtype)
+    return array.reshape(-1, width) if array.size == 0 else array

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""PLY and VTU by meshio, which keeps double precision and the order of polygons."""
+
+import importlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .errors import require
+from .mesh import Indices, MeshData, Reals, fans
+
+_POLYGONS = ("triangle", "quad", "polygon")
+_UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"), ("texture_s", "texture_t"))
+
+
+def read_mesh(path: Path, name: str) -> MeshData:
+    """Triangles, quads and polygons in the file's order; cells of other kinds are passed over."""
+    found = _module(name).read(str(path))
+    points = np.asarray(found.points, np.float64)
+    if points.shape[1] == 2:
+        points = np.column_stack([points, np.zeros(len(points))])
+    faces = [_triangles(block) for block in found.cells if block.type.startswith(_POLYGONS)]
+    return MeshData(points, np.vstack(faces) if faces else np.empty((0, 3), int), _uv(found.point_data))
+
+
+def write_mesh(path: Path, mesh: MeshData, name: str) -> None:
+    meshio = require("meshio", name.upper(), "io")
+    columns = {} if mesh.uv is None else {"s": mesh.uv[:, 0].copy(), "t": mesh.uv[:, 1].copy()}
+    # PLY has no 64-bit integers
+    cells = [("triangle", mesh.faces.astype(np.int32))]
+    _module(name).write(str(path), meshio.Mesh(mesh.vertices, cells, point_data=columns))
+
+
+def _module(name: str) -> Any:
+    require("meshio", name.upper(), "io")
+    return importlib.import_module(f"meshio.{name}")
+
+
+def _triangles(block: Any) -> Indices:
+    if block.type == "triangle":
+        return np.asarray(block.data, np.int64)
+    return fans(np.asarray(block.data).tolist())
+
+
+def _uv(columns: dict[str, Any]) -> Reals | None:
+    for first, second in _UV_NAMES:
+        if first in columns and second in columns:
+            return np.column_stack([columns[first], columns[second]]).astype(np.float64)
+    return None

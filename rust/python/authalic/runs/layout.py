@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""A closed surface onto the sphere and from there into the plane."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._native import distortion, sphere_map
+from ..io import MeshData, Outputs, mesh_format
+from .disk import save_flat
+from .record import Progress, Record, distortion_figures, given, read_input
+
+
+def layout_run(
+    source: Path,
+    target: Path,
+    *,
+    input_format: str | None = None,
+    output_format: str | None = None,
+    options: Mapping[str, Any] | None = None,
+    layout: Mapping[str, Any] | None = None,
+    progress: Progress = None,
+) -> Record:
+    """Lays a closed surface out flat; `layout` are arguments of `SphereMap.layout`, else as `disk_run`."""
+    # 1. The format, before work starts
+    options, layout = given(options or {}), given(layout or {})
+    format = mesh_format(target, output_format)
+    # 2. The map, and its layout
+    mesh, record = read_input(source, input_format, "layout", {**options, **layout})
+    sphere = sphere_map(mesh.vertices, mesh.faces, **options, progress=progress)
+    flat = sphere.layout(**layout)
+    figures = distortion(mesh.vertices[flat.vertex_of], flat.faces, flat.points)
+    record |= {"status": flat.status, "seconds": sphere.seconds + flat.seconds} | distortion_figures(figures)
+    # 3. The file
+    with Outputs() as outputs:
+        result = MeshData(
+            mesh.vertices, mesh.faces, np.asarray(flat.points, np.float64), flat.faces, mesh.metadata
+        )
+        save_flat(outputs.add(target), result, format, record)
+    return record | {"output": str(target)}

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Figures of any map, from any tool, and what a mesh is like."""
+
+from pathlib import Path
+
+import numpy as np
+
+from .._native import MeshError, Surface, distortion
+from ..io import FileError, MeshData, Outputs, mesh_format, read_mesh, value_format
+from ..io.files import save_values
+from .record import Record, areal_distortion, distortion_figures, read_input
+
+
+def measure_run(
+    source: Path,
+    image: Path | None = None,
+    *,
+    areal: Path | None = None,
+    input_format: str | None = None,
+    image_format: str | None = None,
+) -> Record:
+    """Measures a map.
+
+    Parameters
+    ----------
+    source : Path
+        The surface.
+    image : Path, optional
+        A mesh with the same faces, whose vertices are the images: a sphere around the origin, or a plane at z
+        = 0, or a mesh whose UVs are the map. Default: the UVs of the surface's own file.
+    areal : Path, optional
+        The file for log₂ of each vertex's areal distortion.
+    input_format, image_format : str, optional
+        Names of formats where the files' names do not say them.
+
+    Returns
+    -------
+    dict
+        The record of the run.
+    """
+    areal_format = None if areal is None else value_format(areal)
+    mesh, record = read_input(source, input_format, "measure", {})
+    vertices, faces, points = _map(mesh, source, image, image_format)
+    record |= distortion_figures(distortion(vertices, faces, points))
+    if areal is not None and areal_format is not None:
+        if len(vertices) != len(mesh.vertices):
+            raise FileError(source, "the UVs have seams, so that vertices have no single areal distortion")
+        with Outputs() as outputs:
+            values = areal_distortion(vertices, faces, points)
+            save_values(outputs.add(areal), values, areal_format)
+        record["areal_distortion"] = str(areal)
+    return record
+
+
+def info_run(source: Path, *, input_format: str | None = None) -> Record:
+    """What a mesh is like: counts, topology, which maps suit it, or the first thing that is wrong with it."""
+    mesh, record = read_input(source, input_format, "info", {})
+    record["format"] = mesh_format(source, input_format).name
+    record["uv_points"] = 0 if mesh.uv is None else len(mesh.uv)
+    bounded = mesh.vertices[np.isfinite(mesh.vertices).all(axis=1)]
+    if len(bounded):
+        record |= {"lowest": bounded.min(axis=0).tolist(), "highest": bounded.max(axis=0).tolist()}
+    try:
+        surface = Surface(mesh.vertices, mesh.faces)
+    except MeshError as error:
+        return record | {"suits": [], "problem": problem(error)}
+    corners = surface.vertices[surface.faces]
+    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return record | {
+        "area": float(np.linalg.norm(doubled, axis=1).sum() / 2),
+        "components": surface.n_components,
+        "euler_characteristic": surface.euler_characteristic,
+        "genus": surface.genus,
+        "boundary_loops": len(surface.boundary_loops),
+        "suits": _suited(surface),
+    }
+
+
+def problem(error: Exception) -> Record:
+    """The data of an error of the library."""
+    fields = ("kind", "side", "curve", "second_curve", "indices", "count")
+    data = {key: getattr(error, key, None) for key in fields}
+    return {"message": str(error)} | {key: value for key, value in data.items() if value is not None}
+
+
+def _map(
+    mesh: MeshData, source: Path, image: Path | None, format: str | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The surface, cut where its UVs are, with the points of the map."""
+    given = mesh if image is None else read_mesh(image, format)
+    if given.uv is not None and given.uv_faces is not None and (image is None or len(given.uv)):
+        if not np.array_equal(given.faces, mesh.faces):
+            raise FileError(
+                image or source, "the map's faces are not those of the surface, in the same order"
+            )
+        cut = MeshData(mesh.vertices, mesh.faces, given.uv, given.uv_faces).split_at_seams()
+        assert cut.uv is not None
+        return cut.vertices, cut.faces, cut.uv
+    if image is None:
+        raise FileError(source, "the surface has no UVs; name the file of a map to be measured")
+    if not np.array_equal(given.faces, mesh.faces):
+        raise FileError(image, "the map's faces are not those of the surface, in the same order")
+    flat = given.vertices[:, :2] if not given.vertices[:, 2].any() else given.vertices
+    return mesh.vertices, mesh.faces, np.ascontiguousarray(flat)
+
+
+def _suited(surface: Surface) -> list[str]:
+    suited = ["sphere", "layout"] if surface.is_closed and surface.genus == 0 else []
+    if surface.n_components > 1:
+        suited = []
+    return (["disk"] if surface.is_disk else []) + suited + ["unwrap", "seams"]

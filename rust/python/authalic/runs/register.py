@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""One surface onto another, by landmarks, curves or values."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._native import Registration, Surface, register_disks, register_hyperbolic, register_spheres
+from ..io import FileError, MeshData, Outputs, mesh_format, read_mesh, read_values, value_format
+from ..io.arrays import read_table
+from ..io.files import save_mesh, save_values
+from .record import Progress, Record, given, read_input
+
+
+def register_run(
+    source: Path,
+    target: Path,
+    output: Path,
+    *,
+    landmarks: Path | None = None,
+    curves: Path | None = None,
+    features: tuple[Path, Path] | None = None,
+    pull: tuple[Path, Path] | None = None,
+    input_format: str | None = None,
+    output_format: str | None = None,
+    options: Mapping[str, Any] | None = None,
+    progress: Progress = None,
+) -> Record:
+    """Registers a surface to another.
+
+    Parameters
+    ----------
+    source, target : Path
+        The surfaces: both closed, or both with a boundary.
+    output : Path
+        The source's faces with its vertices at their places on the target. As npz it also has `triangles` and
+        `barycentric`, the place of each vertex on the target.
+    landmarks : Path, optional
+        Text with a vertex of the source and one of the target in each row, counted from 0.
+    curves : Path, optional
+        JSON {"source": [[vertices], …], "target": [[vertices], …]}: a registration by curves.
+    features : two Paths, optional
+        Values at the vertices of the source and of the target that are laid over each other.
+    pull : two Paths, optional
+        Values at the vertices of the target, and the file for them at the vertices of the source.
+    input_format, output_format : str, optional
+        Names of formats where the files' names do not say them.
+    options : mapping, optional
+        Arguments of the function of the library.
+    progress : callable, optional
+        As for the library.
+
+    Returns
+    -------
+    dict
+        The record of the run.
+    """
+    # 1. Everything is read before work starts
+    options = given(options or {})
+    format = mesh_format(output, output_format)
+    mesh, record = read_input(source, input_format, "register", options)
+    other = read_mesh(target, input_format)
+    values = None if pull is None else (read_values(pull[0]), value_format(pull[1]))
+    if features is not None:
+        options["features"] = tuple(map(read_values, features))
+    # 2. The registration
+    found = _register(mesh, other, landmarks, curves, options, progress)
+    record |= _figures(found) | {"target": str(target), "target_vertices": len(other.vertices)}
+    # 3. The files
+    with Outputs() as outputs:
+        arrays = {"triangles": found.triangles, "barycentric": found.barycentric}
+        metadata = dict(mesh.metadata) | {"record": dict(record), "arrays": arrays}
+        save_mesh(outputs.add(output), MeshData(found.positions, mesh.faces, metadata=metadata), format)
+        if pull is not None and values is not None:
+            save_values(outputs.add(pull[1]), found.pull(values[0]), values[1])
+            record["pulled"] = str(pull[1])
+    return record | {"output": str(output)}
+
+
+def _register(
+    source: MeshData,
+    target: MeshData,
+    landmarks: Path | None,
+    curves: Path | None,
+    options: dict[str, Any],
+    progress: Progress,
+) -> Registration:
+    surfaces = Surface(source.vertices, source.faces), Surface(target.vertices, target.faces)
+    if curves is not None:
+        pair = json.loads(curves.read_text(encoding="utf-8"))
+        if not isinstance(pair, dict) or not {"source", "target"} <= pair.keys():
+            raise FileError(curves, 'it must hold {"source": [[vertices], …], "target": [[vertices], …]}')
+        options |= {f"{side}_curves": pair[side] for side in ("source", "target")}
+        return register_hyperbolic(*surfaces, **options, progress=progress)
+    if landmarks is not None or not surfaces[0].is_closed:
+        pairs = np.empty((0, 2), int) if landmarks is None else _pairs(landmarks)
+        options |= {"source_landmarks": pairs[:, 0], "target_landmarks": pairs[:, 1]}
+    register = register_spheres if surfaces[0].is_closed else register_disks
+    return register(*surfaces, **options, progress=progress)
+
+
+def _pairs(path: Path) -> np.ndarray:
+    rows = read_table(path)
+    if rows.ndim != 2 or rows.shape[1] != 2 or (rows != rows.round()).any():
+        raise FileError(
+            path, "each row must have a vertex of the source and one of the target, counted from 0"
+        )
+    return rows.astype(np.int64)
+
+
+def _figures(found: Registration) -> Record:
+    strain = found.strain
+    figures = {
+        **{"status": found.status, "iterations": int(found.iterations), "seconds": float(found.seconds)},
+        **{"strain_mean": strain.mean, "strain_median": strain.median, "strain_p95": strain.p95},
+        "folded": len(found.distortion.folded),
+        "missed": found.missed.tolist(),
+        "warnings": [str(warning) for warning in found.warnings],
+    }
+    if len(found.landmark_error):
+        figures["landmark_error_max"] = float(np.max(found.landmark_error))
+    return figures

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""A closed surface onto the sphere."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._native import distortion, sphere_map
+from ..io import MeshData, Outputs, mesh_format, value_format
+from ..io.files import save_mesh, save_values
+from .record import Progress, Record, areal_distortion, given, map_figures, read_input
+
+FREESURFER_RADIUS = 100.0
+
+
+def sphere_output(source: Path, format: str | None = None) -> Path:
+    """The default name: `lh.authalic.sphere` for `lh.white`, `ball.sphere.obj` for `ball.obj`."""
+    chosen = mesh_format(source, format)
+    if chosen.name == "freesurfer":
+        hemisphere = source.name.split(".")[0]
+        return source.with_name(f"{hemisphere}.authalic.sphere")
+    suffix = next((end for end in chosen.suffixes if source.name.lower().endswith(end)), chosen.suffixes[0])
+    stem = source.name[: -len(suffix)] if source.name.lower().endswith(suffix) else source.name
+    return source.with_name(f"{stem}.sphere{source.name[len(stem) :] or suffix}")
+
+
+def sphere_run(
+    source: Path,
+    target: Path,
+    *,
+    areal: Path | None = None,
+    radius: float | None = None,
+    input_format: str | None = None,
+    output_format: str | None = None,
+    options: Mapping[str, Any] | None = None,
+    progress: Progress = None,
+) -> Record:
+    """Maps a surface onto the sphere.
+
+    Parameters
+    ----------
+    source, target : Path
+        The surface, and the file for the sphere: its vertices in the surface's order, its faces unchanged.
+    areal : Path, optional
+        The file for log₂ of each vertex's areal distortion.
+    radius : float, optional
+        Of the sphere. Default: 100 in FreeSurfer's and GIFTI's files, else 1.
+    input_format, output_format : str, optional
+        Names of formats where the files' names do not say them.
+    options : mapping, optional
+        Arguments of `authalic.sphere_map`.
+    progress : callable, optional
+        As for `authalic.sphere_map`.
+
+    Returns
+    -------
+    dict
+        The record of the run.
+    """
+    # 1. The formats, before work starts
+    options = given(options or {})
+    format = mesh_format(target, output_format)
+    areal_format = None if areal is None else value_format(areal)
+    # 2. The map
+    mesh, record = read_input(source, input_format, "sphere", options)
+    result = sphere_map(mesh.vertices, mesh.faces, **options, progress=progress)
+    record |= map_figures(result)
+    # 3. The sphere as the file holds it
+    radius = radius or (FREESURFER_RADIUS if format.name in ("freesurfer", "gifti") else 1.0)
+    points = radius * result.positions
+    record |= {"radius": radius} | _in_single_precision(mesh, points, format.precision)
+    # 4. The files
+    with Outputs() as outputs:
+        metadata = dict(mesh.metadata) | {"record": record}
+        save_mesh(outputs.add(target), MeshData(points, mesh.faces, metadata=metadata), format)
+        record["output"] = str(target)
+        if areal is not None and areal_format is not None:
+            values = areal_distortion(mesh.vertices, mesh.faces, result.positions)
+            save_values(outputs.add(areal), values, areal_format)
+            record["areal_distortion"] = str(areal)
+    return record
+
+
+def _in_single_precision(mesh: MeshData, points: np.ndarray, precision: str) -> Record:
+    """How many faces fold when coordinates are rounded to the file's precision."""
+    if precision == "float64":
+        return {}
+    rounded = points.astype(np.float32).astype(np.float64)
+    return {"folded_in_file": len(distortion(mesh.vertices, mesh.faces, rounded).folded)}

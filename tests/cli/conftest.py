@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Fixtures: surfaces in files, and the command in this process and in one of its own."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from api import meshes
+
+from authalic.cli import main
+from authalic.io import MeshData, write_mesh
+
+
+class Result(NamedTuple):
+    """How a command ended."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def record(self):
+        return json.loads(self.out)
+
+    @property
+    def error(self):
+        return json.loads(self.err)["error"]
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder with a closed surface, one with a boundary and one with a handle."""
+    write_mesh(tmp_path / "ball.obj", MeshData(*meshes.bumpy_ball()))
+    write_mesh(tmp_path / "cap.obj", MeshData(*meshes.bumpy_cap()))
+    write_mesh(tmp_path / "torus.obj", MeshData(*meshes.torus()))
+    return tmp_path
+
+
+@pytest.fixture
+def run(capsys, folder, monkeypatch):
+    """run("sphere", "ball.obj") runs the command in `folder`."""
+    monkeypatch.chdir(folder)
+
+    def run_command(*words):
+        capsys.readouterr()
+        code = main([str(word) for word in words])
+        captured = capsys.readouterr()
+        return Result(code, captured.out, captured.err)
+
+    return run_command
+
+
+def start(code, folder, **options):
+    """Starts Python code in a process of its own, in a folder, with its output in pipes."""
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
+    return subprocess.Popen([sys.executable, "-c", code], cwd=folder, env=environment, **pipes, **options)
+
+
+def names(folder: Path):
+    """All files in a folder and below."""
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())

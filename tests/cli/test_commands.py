@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Each command on small files: what it writes is what the library returns."""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from api import meshes
+
+import authalic
+from authalic.io import MeshData, read_mesh, read_values, write_mesh, write_values
+
+from .conftest import names, start
+
+
+def test_sphere_writes_the_librarys_map(run, folder):
+    result = run("sphere", "ball.obj", "--json")
+    expected = authalic.sphere_map(*meshes.bumpy_ball())
+    assert result.code == 0 and result.err == ""
+    assert np.array_equal(read_mesh(folder / "ball.sphere.obj").vertices, expected.positions)
+    record = result.record
+    assert record["output"] == "ball.sphere.obj" and record["status"] == expected.status
+    assert record["area_ratio_std"] == expected.distortion.area_ratio_std and record["folded"] == 0
+    assert (record["vertices"], record["faces"], record["command"]) == (258, 512, "sphere")
+
+
+def test_a_cortex_becomes_a_sphere_that_freesurfer_and_nibabel_read(run, folder):
+    nibabel_io = pytest.importorskip("nibabel.freesurfer.io")
+    mesh = meshes.bumpy_ball()
+    nibabel_io.write_geometry("lh.white", 50 * mesh.vertices, mesh.faces)
+    assert run("sphere", "lh.white", "--areal", "lh.areal").code == 0
+    points, faces = nibabel_io.read_geometry("lh.authalic.sphere")
+    assert np.array_equal(faces, mesh.faces)
+    assert np.allclose(np.linalg.norm(points, axis=1), 100, atol=1e-4)
+    # the areas of the vertices, face by face
+    areas = np.zeros((2, len(points)))
+    for row, place in zip(areas, (mesh.vertices, points), strict=True):
+        for face in faces:
+            a, b, c = place[face].astype(float)
+            row[face] += np.linalg.norm(np.cross(b - a, c - a)) / 6
+    shares = areas / areas.sum(axis=1, keepdims=True)
+    expected = np.log2(shares[1] / shares[0])
+    assert np.allclose(nibabel_io.read_morph_data("lh.areal"), expected, atol=1e-4)
+
+
+def test_gifti_goes_in_and_out_with_values(run, folder):
+    nibabel = pytest.importorskip("nibabel")
+    write_mesh(folder / "lh.white.surf.gii", MeshData(*meshes.bumpy_ball()))
+    assert run("sphere", "lh.white.surf.gii", "--areal", "lh.shape.gii").code == 0
+    points, faces = nibabel.load("lh.white.sphere.surf.gii").agg_data(("pointset", "triangle"))
+    assert np.allclose(np.linalg.norm(points, axis=1), 100, atol=1e-4) and faces.shape == (512, 3)
+    assert nibabel.load("lh.shape.gii").agg_data().shape == (258,)
+
+
+def test_radius_and_options_reach_the_library(run, folder):
+    words = ("--radius", 2.5, "--angle-weight", 0.1, "--max-iterations", 3, "--threads", 1)
+    result = run("sphere", "ball.obj", "out.npz", *words, "--json")
+    expected = authalic.sphere_map(*meshes.bumpy_ball(), angle_weight=0.1, max_iterations=3)
+    assert np.array_equal(read_mesh(folder / "out.npz").vertices, 2.5 * expected.positions)
+    assert result.record["options"] == {"angle_weight": 0.1, "max_iterations": 3}
+    authalic.set_threads(0)
+
+
+def test_npz_records_how_it_was_made(run, folder):
+    run("sphere", "ball.obj", "out.npz")
+    record = json.loads(str(np.load(folder / "out.npz")["record"]))
+    assert record["authalic"] == authalic.__version__ and record["command"] == "sphere"
+    digest = subprocess.run(["sha256sum", "ball.obj"], capture_output=True, text=True, cwd=folder)
+    assert digest.returncode != 0 or record["input_sha256"] == digest.stdout.split()[0]
+
+
+def test_disk_writes_uvs_or_the_flat_map(run, folder):
+    expected = authalic.disk_map(*meshes.bumpy_cap())
+    assert run("disk", "cap.obj", "uv.obj").code == 0
+    mesh = read_mesh(folder / "uv.obj")
+    assert np.array_equal(mesh.uv, expected.uv) and np.array_equal(mesh.vertices, meshes.bumpy_cap().vertices)
+    assert run("disk", "cap.obj", "flat.off", "--areal", "areal.npy").code == 0
+    flat = read_mesh(folder / "flat.off").vertices
+    assert np.array_equal(flat[:, :2], expected.uv) and not flat[:, 2].any()
+    assert np.abs(read_values(folder / "areal.npy")).max() < 0.1
+
+
+def test_disk_takes_a_rectangle(run, folder):
+    assert run("disk", "cap.obj", "uv.npz", "--boundary", "rectangle", "--aspect", 2).code == 0
+    assert np.allclose(np.ptp(read_mesh(folder / "uv.npz").uv, axis=0), [1, 0.5])
+
+
+def test_unwrap_writes_the_librarys_uvs_at_each_corner(run, folder):
+    result = run("unwrap", "torus.obj", "uv.obj", "--json")
+    expected = authalic.unwrap(tuple(meshes.torus()))
+    mesh = read_mesh(folder / "uv.obj")
+    assert np.array_equal(mesh.uv[mesh.uv_faces], expected.uv[expected.faces])
+    assert result.record["islands"] == expected.islands and result.record["shear"] == expected.shear
+
+
+def test_seams_are_written_as_a_table_as_arrays_and_as_lines(run, folder):
+    expected = authalic.seams(tuple(meshes.torus())).edges
+    for name in ("seams.csv", "seams.npz", "seams.obj"):
+        assert run("seams", "torus.obj", name).code == 0
+    assert np.array_equal(np.loadtxt("seams.csv", delimiter=",", skiprows=1), expected)
+    assert np.array_equal(np.load("seams.npz")["edges"], expected)
+    lines = [line.split()[1:] for line in (folder / "seams.obj").read_text().splitlines() if line[0] == "l"]
+    assert np.array_equal(np.array(lines, int) - 1, expected)
+    assert run("seams", "torus.obj", "seams.ply").code == 3
+
+
+def test_layout_covers_its_rectangle_with_the_areas_of_the_surface(run, folder):
+    result = run("layout", "ball.obj", "flat.obj", "--kind", "octahedral", "--json")
+    mesh = read_mesh(folder / "flat.obj")
+    assert result.code == 0 and len(mesh.uv) > len(mesh.vertices)
+    figures = authalic.distortion(*_cut(mesh))
+    assert result.record["area_ratio_std"] == pytest.approx(figures.area_ratio_std, rel=1e-9)
+
+
+def _cut(mesh):
+    cut = mesh.split_at_seams()
+    return cut.vertices, cut.faces, cut.uv
+
+
+def test_register_carries_landmarks_and_values(run, folder):
+    source, target = meshes.bumpy_ball(), meshes.radial(lambda x, y, z: 1 + 0.2 * x)
+    write_mesh(folder / "target.obj", MeshData(*target))
+    landmarks = np.array([[0, 0], [1, 1], [2, 2], [5, 5]])
+    (folder / "landmarks.csv").write_text("source,target\n" + "".join(f"{a},{b}\n" for a, b in landmarks))
+    write_values(folder / "height.npy", target.vertices[:, 2])
+    words = ("--landmarks", "landmarks.csv", "--pull", "height.npy", "pulled.npy", "--json")
+    result = run("register", "ball.obj", "target.obj", "out.npz", *words)
+    assert result.code == 0, result.err
+    expected = authalic.register_spheres(
+        source, target, source_landmarks=landmarks[:, 0], target_landmarks=landmarks[:, 1]
+    )
+    assert np.array_equal(read_mesh(folder / "out.npz").vertices, expected.positions)
+    arrays = np.load(folder / "out.npz")
+    places = target.vertices[target.faces[arrays["triangles"]]] * arrays["barycentric"][:, :, None]
+    assert np.allclose(places.sum(axis=1), expected.positions, atol=1e-9)
+    assert np.allclose(read_values(folder / "pulled.npy"), expected.positions[:, 2], atol=1e-9)
+    assert result.record["folded"] == 0
+
+
+def test_register_refuses_pairs_that_are_none(run, folder):
+    (folder / "landmarks.csv").write_text("1,2,3\n")
+    result = run("register", "ball.obj", "ball.obj", "out.obj", "--landmarks", "landmarks.csv")
+    assert result.code == 3 and "counted from 0" in result.err
+
+
+def test_measure_finds_a_folded_face_in_any_tools_map(run, folder):
+    run("sphere", "ball.obj", "sphere.ply")
+    whole = run("measure", "ball.obj", "sphere.ply", "--json").record
+    expected = authalic.sphere_map(*meshes.bumpy_ball()).distortion
+    assert (
+        whole["area_ratio_std"] == pytest.approx(expected.area_ratio_std, rel=1e-9) and whole["folded"] == 0
+    )
+    mesh = read_mesh(folder / "sphere.ply")
+    mesh.vertices[0] *= -1
+    write_mesh(folder / "folded.ply", mesh)
+    assert run("measure", "ball.obj", "folded.ply", "--json").record["folded"] > 0
+
+
+def test_measure_takes_the_uvs_of_the_file_with_their_seams(run, folder):
+    run("unwrap", "torus.obj", "uv.obj")
+    result = run("measure", "uv.obj", "--json")
+    assert result.code == 0, result.err
+    assert result.record["folded"] == 0
+    shear = authalic.unwrap(tuple(meshes.torus())).shear
+    assert result.record["angle_distortion_mean"] == pytest.approx(shear, rel=0.05)
+    assert run("measure", "torus.obj").code == 3
+    assert run("measure", "torus.obj", "ball.obj").code == 3
+
+
+def test_info_says_what_suits(run, folder):
+    assert run("info", "ball.obj", "--json").record["suits"] == ["sphere", "layout", "unwrap", "seams"]
+    assert run("info", "cap.obj", "--json").record["suits"] == ["disk", "unwrap", "seams"]
+    torus = run("info", "torus.obj", "--json").record
+    assert torus["suits"] == ["unwrap", "seams"] and torus["genus"] == 1 and torus["boundary_loops"] == 0
+    assert "genus: 1" in run("info", "torus.obj").out
+
+
+def test_info_says_what_is_wrong(run, folder):
+    vertices, faces = meshes.octahedron()
+    vertices[2] = np.nan
+    write_mesh(folder / "bad.obj", MeshData(vertices, faces))
+    result = run("info", "bad.obj", "--json")
+    assert result.code == 0 and result.record["suits"] == []
+    assert result.record["problem"]["kind"] == "not_finite" and result.record["problem"]["indices"] == [2]
+
+
+COMMAND = "import sys; from authalic.cli import main; sys.exit(main(sys.argv[1:]))"
+
+
+def piped(folder, words, content):
+    done = subprocess.run(
+        [sys.executable, "-m", "authalic", *words],
+        cwd=folder,
+        input=content,
+        capture_output=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr
+    return done
+
+
+def test_meshes_go_through_pipes(folder):
+    words = ["sphere", "-", "-", "--input-format", "obj", "--output-format", "ply"]
+    first = piped(folder, words, (folder / "ball.obj").read_bytes())
+    assert b"area ratio SD" in first.stderr and first.stdout.startswith(b"ply")
+    second = piped(folder, ["info", "-", "--input-format", "ply", "--json"], first.stdout)
+    record = json.loads(second.stdout)
+    assert record["input"] == "-" and np.allclose(record["highest"], 1, atol=0.02)
+    assert names(folder) == ["ball.obj", "cap.obj", "torus.obj"]
+
+
+def test_a_stream_needs_the_name_of_its_format(run):
+    assert run("sphere", "-", "out.obj").code == 2
+    assert run("sphere", "ball.obj", "-").code == 2
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such pipes")
+def test_a_reader_that_goes_early_is_no_error(folder):
+    process = start("import sys; from authalic.cli import main; sys.exit(main(['info', 'ball.obj']))", folder)
+    process.stdout.close()
+    assert process.wait(timeout=60) == 0, process.stderr.read()
+    assert process.stderr.read() == b""
+
+
+def test_progress_is_lines_where_there_is_no_terminal(capsys):
+    from authalic.cli import progress
+
+    bar = progress.ProgressBar("sphere")
+    bar._shown -= progress.INTERVAL
+    with bar:
+        bar(0.25, "lowering areas")
+        bar(0.5, "at once after it")
+    assert capsys.readouterr().err == "sphere: 25 % lowering areas\n"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no pseudo-terminals")
+def test_progress_is_a_bar_on_a_terminal(folder):
+    import pty
+
+    leader, follower = pty.openpty()
+    done = subprocess.run(
+        [sys.executable, "-m", "authalic", "sphere", "ball.obj"],
+        cwd=folder,
+        stderr=follower,
+        stdout=subprocess.PIPE,
+        env={**os.environ, "TERM": "xterm"},
+        timeout=120,
+    )
+    os.close(follower)
+    shown = os.read(leader, 100_000)
+    os.close(leader)
+    assert done.returncode == 0 and b"sphere" in shown and b"\x1b[" in shown

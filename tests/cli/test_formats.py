@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Every format's way into a file and back, and what the files of other tools are like."""
+
+import gzip
+
+import numpy as np
+import pytest
+from api import meshes
+
+from authalic.io import (
+    MESH_FORMATS,
+    FileError,
+    MeshData,
+    mesh_format,
+    read_mesh,
+    read_values,
+    write_mesh,
+    write_values,
+)
+
+MESH_NAMES = {
+    **{format.name: f"surface{format.suffixes[0]}" for format in MESH_FORMATS if format.suffixes},
+    "freesurfer": "lh.white",
+    "gifti, zipped": "surface.surf.gii.gz",
+}
+VALUE_NAMES = [
+    "area.shape.gii",
+    "area.func.gii",
+    "lh.area",
+    "area.npy",
+    "area.npz",
+    "area.csv",
+    "area.shape.gii.gz",
+]
+SINGLE = {"stl", "glb", "gltf", "gifti", "gifti, zipped", "freesurfer"}
+
+
+def scrambled(mesh, seed=5):
+    """Vertices and faces in some order that no reader would come to by itself."""
+    chance = np.random.default_rng(seed)
+    order, rows = chance.permutation(len(mesh.vertices)), chance.permutation(len(mesh.faces))
+    return mesh.vertices[order] * 17 + 3, np.argsort(order)[mesh.faces[rows]]
+
+
+@pytest.mark.parametrize("name", [name for name in MESH_NAMES if name != "stl"])
+def test_vertices_and_faces_come_back_in_their_order(name, tmp_path):
+    vertices, faces = scrambled(meshes.bumpy_cap())
+    write_mesh(tmp_path / MESH_NAMES[name], MeshData(vertices, faces))
+    mesh = read_mesh(tmp_path / MESH_NAMES[name])
+    expected = vertices.astype(np.float32) if name in SINGLE else vertices
+    assert np.array_equal(mesh.vertices, expected)
+    assert np.array_equal(mesh.faces, faces)
+    assert mesh.vertices.dtype == np.float64 and mesh.faces.dtype == np.int64
+
+
+@pytest.mark.parametrize("name", [name for name in MESH_NAMES if name != "stl"])
+def test_points_that_coincide_or_have_no_face_stay(name, tmp_path):
+    vertices = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [7, 7, 7]])
+    faces = np.array([[3, 5, 4], [0, 1, 2]])
+    write_mesh(tmp_path / MESH_NAMES[name], MeshData(vertices, faces))
+    mesh = read_mesh(tmp_path / MESH_NAMES[name])
+    assert np.array_equal(mesh.vertices, vertices) and np.array_equal(mesh.faces, faces)
+
+
+def test_the_triangles_of_stl_stay_apart(tmp_path):
+    vertices, faces = scrambled(meshes.octahedron())
+    write_mesh(tmp_path / "surface.stl", MeshData(vertices, faces))
+    mesh = read_mesh(tmp_path / "surface.stl")
+    assert np.array_equal(mesh.faces, np.arange(3 * len(faces)).reshape(-1, 3))
+    assert np.array_equal(mesh.vertices, vertices[faces].reshape(-1, 3).astype(np.float32))
+
+
+@pytest.mark.parametrize("name", [format.name for format in MESH_FORMATS if format.uv])
+def test_uvs_come_back_at_every_corner(name, tmp_path):
+    """One seam: two of the square's corners have two UV points each."""
+    vertices = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0.5], [0, 1, 0]])
+    faces, uv_faces = np.array([[0, 1, 2], [0, 2, 3]]), np.array([[4, 0, 1], [2, 3, 5]])
+    uv = np.array([[0.25, 0], [0.25, 0.5], [0.5, 0], [0.5, 0.75], [0, 0], [1, 1]])
+    path = tmp_path / MESH_NAMES[name]
+    write_mesh(path, MeshData(vertices, faces, uv, uv_faces))
+    mesh = read_mesh(path)
+    assert np.allclose(mesh.vertices[mesh.faces], vertices[faces], atol=1e-7)
+    assert np.allclose(mesh.uv[mesh.uv_faces], uv[uv_faces], atol=1e-7)
+    if mesh_format(path).uv == "corner":
+        assert np.array_equal(mesh.faces, faces) and np.array_equal(mesh.uv_faces, uv_faces)
+    else:
+        assert len(mesh.vertices) == 6
+
+
+def test_polygons_of_obj_become_fans_in_their_order(tmp_path):
+    path = tmp_path / "polygons.obj"
+    path.write_text(
+        "# a comment\nmtllib none.mtl\no thing\nv 0 0 0\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 0\nv 2 2 2\n"
+        "vt 0 0\nvt 1 0 0\nvt 1 1\nvt 0 1\nvn 0 0 1\ns 1\n"
+        "f 1/1/1 2/2/1 5/3/1\nf 1/1 2/2 \\\n3/3 4/4\nf -4/-3 -3/-2 -1/-1\n"
+    )
+    mesh = read_mesh(path)
+    assert mesh.faces.tolist() == [[0, 1, 4], [0, 1, 2], [0, 2, 3], [1, 2, 4]]
+    assert mesh.uv_faces.tolist() == [[0, 1, 2], [0, 1, 2], [0, 2, 3], [1, 2, 3]]
+
+
+def test_polygons_of_ply_become_fans_in_their_order(tmp_path):
+    path = tmp_path / "polygons.ply"
+    points = "0 0 0 255\n1 0 0 255\n1 1 0 255\n0 1 0 255\n2 2 2 255\n"
+    path.write_text(
+        "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 5\nproperty float x\nproperty float y\n"
+        "property float z\nproperty uchar red\nelement face 3\nproperty list uchar int vertex_indices\n"
+        f"end_header\n{points}3 0 1 4\n4 0 1 2 3\n3 1 2 4\n"
+    )
+    assert read_mesh(path).faces.tolist() == [[0, 1, 4], [0, 1, 2], [0, 2, 3], [1, 2, 4]]
+
+
+def test_polygons_and_colors_of_off(tmp_path):
+    path = tmp_path / "polygons.off"
+    path.write_text(
+        "OFF\n# by hand\n4 2 0\n0 0 0\n1 0 0 # here\n1 1 0\n0 1 0\n\n3 0 1 3 255 0 0\n4 0 1 2 3\n"
+    )
+    assert read_mesh(path).faces.tolist() == [[0, 1, 3], [0, 1, 2], [0, 2, 3]]
+
+
+POLYDATA = """# vtk DataFile Version 4.2
+vtk output
+{coding}
+DATASET POLYDATA
+POINTS 4 float
+"""
+
+
+def test_vtk_polydata_in_ascii(tmp_path):
+    path = tmp_path / "surface.vtk"
+    path.write_text(
+        POLYDATA.format(coding="ASCII")
+        + "0 0 0 1 0 0 1 1 0\n0 1 0\nLINES 1 3\n2 0 1\nPOLYGONS 2 9\n3 0 1 3\n4 0 1 2 3\nPOINT_DATA 4\n"
+    )
+    mesh = read_mesh(path)
+    assert mesh.vertices.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    assert mesh.faces.tolist() == [[0, 1, 3], [0, 1, 2], [0, 2, 3]]
+
+
+def test_vtk_polydata_in_binary_of_old_and_new_versions(tmp_path):
+    points = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], ">f4").tobytes()
+    head = POLYDATA.format(coding="BINARY").encode() + points + b"\nMETADATA\nINFORMATION 0\n\n"
+    old = b"POLYGONS 2 8\n" + np.array([3, 0, 1, 2, 3, 0, 2, 3], ">i4").tobytes() + b"\n"
+    new = b"POLYGONS 3 6\nOFFSETS vtktypeint64\n" + np.array([0, 3, 6], ">i8").tobytes()
+    new += b"\nCONNECTIVITY vtktypeint64\n" + np.array([0, 1, 2, 0, 2, 3], ">i8").tobytes() + b"\n"
+    for polygons in (old, new):
+        (tmp_path / "surface.vtk").write_bytes(head + polygons)
+        mesh = read_mesh(tmp_path / "surface.vtk")
+        assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]] and mesh.vertices[2].tolist() == [1, 1, 0]
+
+
+@pytest.mark.parametrize("name", VALUE_NAMES)
+def test_values_come_back(name, tmp_path):
+    values = np.random.default_rng(2).normal(size=30)
+    write_values(tmp_path / name, values)
+    single = name.startswith("lh.") or ".gii" in name
+    assert np.array_equal(read_values(tmp_path / name), values.astype(np.float32) if single else values)
+
+
+@pytest.mark.parametrize("name", ["v.shape.gii", "v.npy", "v.csv"])
+def test_several_columns_of_values_come_back(name, tmp_path):
+    values = np.arange(12.0).reshape(4, 3)
+    write_values(tmp_path / name, values)
+    assert np.array_equal(read_values(tmp_path / name), values)
+    with pytest.raises(FileError, match="one column"):
+        write_values(tmp_path / "lh.area", values)
+
+
+def test_a_table_may_have_a_head_and_any_separator(tmp_path):
+    (tmp_path / "v.txt").write_text("\ufefffirst;second\n1;2\n3\t4\n\n5 6\n", encoding="utf-8")
+    assert read_values(tmp_path / "v.txt").tolist() == [[1, 2], [3, 4], [5, 6]]
+
+
+def test_freesurfer_keeps_the_volume_and_writes_the_same_file_twice(tmp_path):
+    nibabel_io = pytest.importorskip("nibabel.freesurfer.io")
+    mesh = meshes.octahedron()
+    volume = {
+        **{"head": np.array([2, 0, 20]), "valid": "1  # volume info valid", "filename": "orig.mgz"},
+        **{"volume": np.array([256, 256, 256]), "voxelsize": np.ones(3), "xras": np.array([-1.0, 0, 0])},
+        **{"yras": np.array([0.0, 0, -1]), "zras": np.array([0.0, 1, 0]), "cras": np.array([5.0, 6, 7])},
+    }
+    nibabel_io.write_geometry(str(tmp_path / "lh.white"), mesh.vertices, mesh.faces, volume_info=volume)
+    for name in ("lh.copy", "lh.again"):
+        write_mesh(tmp_path / name, read_mesh(tmp_path / "lh.white"))
+    kept = nibabel_io.read_geometry(str(tmp_path / "lh.copy"), read_metadata=True)[2]
+    assert np.array_equal(kept["cras"], [5, 6, 7]) and kept["filename"] == "orig.mgz"
+    assert (tmp_path / "lh.copy").read_bytes() == (tmp_path / "lh.again").read_bytes()
+
+
+def test_gifti_keeps_what_the_points_are(tmp_path):
+    nibabel = pytest.importorskip("nibabel")
+    gifti = nibabel.gifti
+    mesh = meshes.octahedron()
+    meta = gifti.GiftiMetaData({"AnatomicalStructurePrimary": "CortexLeft"})
+    points = gifti.GiftiDataArray(mesh.vertices.astype("f4"), "NIFTI_INTENT_POINTSET", meta=meta)
+    faces = gifti.GiftiDataArray(mesh.faces.astype("i4"), "NIFTI_INTENT_TRIANGLE")
+    nibabel.save(gifti.GiftiImage(darrays=[points, faces]), tmp_path / "a.surf.gii")
+    write_mesh(tmp_path / "b.surf.gii", read_mesh(tmp_path / "a.surf.gii"))
+    image = nibabel.load(tmp_path / "b.surf.gii")
+    assert dict(image.darrays[0].meta) == {"AnatomicalStructurePrimary": "CortexLeft"}
+    assert np.array_equal(image.agg_data("triangle"), mesh.faces)
+
+
+@pytest.mark.parametrize("name", MESH_NAMES)
+def test_a_damaged_file_is_named_as_such(name, tmp_path):
+    path = tmp_path / MESH_NAMES[name]
+    vertices, faces = meshes.octahedron()
+    write_mesh(path, MeshData(vertices, faces))
+    content = path.read_bytes()
+    for damaged in (b"", b"what is this\n", content[: len(content) // 3]):
+        path.write_bytes(damaged)
+        with pytest.raises((FileError, OSError)) as caught:
+            mesh = read_mesh(path)
+            # a text file cut off between two lines is a smaller mesh that lacks vertices
+            assert mesh.faces.max(initial=0) < len(mesh.vertices)
+            raise FileError(path, f"{path}: it ends early")
+        assert str(path) in str(caught.value)
+
+
+def test_names_say_formats(tmp_path):
+    assert mesh_format("a/lh.white").name == "freesurfer"
+    assert mesh_format("lh.white.surf.gii").name == "gifti"
+    assert mesh_format("SHOUT.OBJ").name == "obj"
+    assert mesh_format("whatever", "vtu").name == "vtu"
+    with pytest.raises(FileError, match=r"rename it or name a format \(obj, ply"):
+        mesh_format("surface.xyz")
+    with pytest.raises(FileError, match="jpg is no format"):
+        mesh_format("surface.obj", "jpg")
+
+
+def test_a_file_of_values_is_no_surface_and_the_other_way_round(tmp_path):
+    write_values(tmp_path / "a.shape.gii", np.ones(6))
+    write_mesh(tmp_path / "a.surf.gii", MeshData(*meshes.octahedron()))
+    with pytest.raises(FileError, match="is it a file of values"):
+        read_mesh(tmp_path / "a.shape.gii")
+    with pytest.raises(FileError, match="is it a surface"):
+        read_values(tmp_path / "a.surf.gii")
+    (tmp_path / "z.obj").write_bytes(gzip.compress(b"v 0 0 0"))
+    with pytest.raises(FileError, match="no triangles"):
+        read_mesh(tmp_path / "z.obj")
+
+
+def test_files_appear_together_or_not_at_all(tmp_path):
+    from authalic.io import Outputs
+
+    (tmp_path / "old.txt").write_text("old")
+    with pytest.raises(KeyboardInterrupt), Outputs() as outputs:
+        outputs.add(tmp_path / "old.txt").write_text("new")
+        outputs.add(tmp_path / "other.txt").write_text("new")
+        raise KeyboardInterrupt
+    assert [path.name for path in tmp_path.iterdir()] == ["old.txt"]
+    assert (tmp_path / "old.txt").read_text() == "old"
+    with Outputs() as outputs:
+        outputs.add(tmp_path / "old.txt").write_text("new")
+        assert (tmp_path / "old.txt").read_text() == "old"
+    assert (tmp_path / "old.txt").read_text() == "new" and len(list(tmp_path.iterdir())) == 1

@@ -202,7 +202,7 @@ def _registered_by_points(
 ) -> Registered:
     surfaces, patches = zip(*(_in_library(side) for side in sides), strict=True)
     common = domain(sides, patches, settings.domain)
-    landmarks = check_landmarks(sides, pairs, common)
+    landmarks = check_landmarks(sides, pairs, common, settings)
     make: Any = authalic.register_disks if common.shape == "DISK" else authalic.register_spheres
     native = make(
         *surfaces,

@@ -56,16 +56,23 @@ class Couple:
         return self.pairs if method == "POINTS" else self.curves
 
     def check_feature(self, settings: Settings) -> None:
-        """Raises `CannotRegister` unless both objects have the feature of some settings, and it varies."""
+        """Raises `CannotRegister` unless both objects have the feature of some settings, finite and varying."""
         name = settings.that_count.feature
         if not name:
             return
         if name not in self.pulls.features:
             both = f"{self.source.name} and {self.target.name}"
             raise CannotRegister(f'{both} do not both have the vertex group or attribute "{name}"')
-        for obj, signal in zip((self.source, self.target), self.pulls.features[name], strict=True):
-            if not np.isfinite(signal).all() or not np.ptp(signal) > 0:
-                raise CannotRegister(f'"{name}" is the same all over {obj.name}, and so tells nothing')
+        for side, signal in zip(self.sides, self.pulls.features[name], strict=True):
+            bad = side.vertices[~np.isfinite(signal) & (side.vertices >= 0)]
+            if len(bad):
+                noun = "vertex" if len(bad) == 1 else "vertices"
+                raise CannotRegister(
+                    f'"{name}" is NaN or infinite at {noun} {messages.numbers(bad)} of {side.name}; '
+                    "repair its values there"
+                )
+            if not np.ptp(signal) > 0:
+                raise CannotRegister(f'"{name}" is the same all over {side.name}, and so tells nothing')
 
 
 def chosen(context: bpy.types.Context, feature: str = "") -> Couple:

@@ -61,15 +61,18 @@ def _most_near(registered: Registered) -> str:
 
 
 def _figures_of_points(registered: Registered) -> list[str]:
-    mean, most = 100 * registered.errors.mean(), 100 * registered.errors.max()
-    error = f"landmark error mean {mean:.3f} % and max {most:.3f} % of the size of {registered.target.name}"
     return [
-        messages.count(len(registered.names), "landmark pair"),
-        f"{error}{_worst(registered)}",
+        *(_errors_of_points(registered) if registered.names else ["by a feature alone"]),
         messages.count(registered.folds, "fold"),
         _strain(registered),
         *([] if registered.keeps_shapes else [f"authalic energy {registered.energy:.3g}"]),
     ]
+
+
+def _errors_of_points(registered: Registered) -> list[str]:
+    mean, most = 100 * registered.errors.mean(), 100 * registered.errors.max()
+    error = f"landmark error mean {mean:.3f} % and max {most:.3f} % of the size of {registered.target.name}"
+    return [messages.count(len(registered.names), "landmark pair"), f"{error}{_worst(registered)}"]
 
 
 def _figures_of_curves(registered: Registered) -> list[str]:

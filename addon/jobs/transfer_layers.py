@@ -214,8 +214,9 @@ def _registration(
 def _last(couple: Couple) -> RegistrationSettings:
     """The settings of the last registration with the target, or a method for which there are landmarks."""
     boundaries = any(is_open(side) for side in couple.sides)
-    can = {"POINTS": bool(couple.pairs), "CURVES": bool(couple.curves) or boundaries}
     last = last_registration.settings(couple.source)
+    by_feature = last is not None and bool(last.that_count.feature)
+    can = {"POINTS": bool(couple.pairs) or by_feature, "CURVES": bool(couple.curves) or boundaries}
     if last is not None and can[last.method]:
         return last
     return RegistrationSettings(method=next((method for method in can if can[method]), "POINTS"))
@@ -225,7 +226,8 @@ def _by(carried_: Carried) -> str:
     """Which registration a transfer goes by, and whether it is smooth, for the report."""
     registered = carried_.registered
     curves = "landmark curves" if registered.names else "boundaries"
-    by = f"by {curves if registered.by_curves else 'landmark points'}"
+    points = "landmark points" if registered.names else "a feature"
+    by = f"by {curves if registered.by_curves else points}"
     by += ", smoothly" if carried_.is_smooth else ""
     return f"{by} (registered anew)" if carried_.is_new else by
 

@@ -9,24 +9,24 @@ from .. import messages
 from ..surfaces.arrays import Booleans, Integers
 from ..surfaces.suitability import Unsuitable
 from .domain import Domain
+from .settings import Settings
 from .sides import PointPair, Side
 
 _FEWEST = {"DISK": 1, "SPHERE": 2}
 
 
-def check_landmarks(sides: tuple[Side, Side], pairs: Sequence[PointPair], domain: Domain) -> Integers:
+def check_landmarks(
+    sides: tuple[Side, Side], pairs: Sequence[PointPair], domain: Domain, settings: Settings
+) -> Integers:
     """The landmarks of source and target as points (2, k) of the sides.
 
     `pairs` are (name, source vertex, target vertex). Raises `Unsuitable` with the names of the pairs that
     cannot be.
     """
-    if len(pairs) < _FEWEST[domain.shape]:
-        few = "at least two landmark pairs, better four or more"
-        few = "a landmark pair" if domain.shape == "DISK" else few
-        raise Unsuitable(f"{sides[0].name} needs {few}; add vertices that belong together")
+    _check_number(sides[0].name, len(pairs), domain, settings)
     landmarks = []
     for number, (side, outline) in enumerate(zip(sides, domain.outlines, strict=True), 1):
-        vertices = np.array([pair[number] for pair in pairs])
+        vertices = np.array([pair[number] for pair in pairs], int)
         outside = (vertices < 0) | (vertices >= side.count)
         _refuse(pairs, outside, f"is on no vertex of {side.name}; pick it again")
         points = side.points_of(vertices)
@@ -42,6 +42,18 @@ def check_landmarks(sides: tuple[Side, Side], pairs: Sequence[PointPair], domain
         _refuse(pairs, np.isin(points, outline), problem)
         landmarks.append(points)
     return np.array(landmarks)
+
+
+def _check_number(name: str, count: int, domain: Domain, settings: Settings) -> None:
+    """Spheres may be laid over each other by a feature alone."""
+    if count >= _FEWEST[domain.shape] or (domain.shape == "SPHERE" and settings.that_count.feature):
+        return
+    few = "a landmark pair"
+    remedy = "add vertices that belong together"
+    if domain.shape == "SPHERE":
+        few = "at least two landmark pairs, better four or more"
+        remedy += ", or choose a feature"
+    raise Unsuitable(f"{name} needs {few}; {remedy}")
 
 
 def _refuse(pairs: Sequence[PointPair], bad: Booleans, problem: str) -> None:

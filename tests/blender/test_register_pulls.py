@@ -122,7 +122,33 @@ def test_a_feature_that_tells_nothing_is_refused() -> None:
         paint(obj, "Up", np.ones(len(obj.data.vertices)))
     with pytest.raises(RuntimeError, match='"Up" is the same all over Ball'):
         register(feature="Up")
+    target.data.attributes["Up"].data[3].value = np.nan
+    source.data.attributes["Up"].data[0].value = 2
+    with pytest.raises(RuntimeError, match='"Up" is NaN or infinite at vertex 3 of Twin'):
+        register(feature="Up")
     assert source.data.shape_keys is None
+
+
+def test_a_feature_alone_lays_closed_meshes_over_each_other(capfd: pytest.CaptureFixture[str]) -> None:
+    source, target = balls()
+    part("landmarks.points").clear(source)
+    with pytest.raises(RuntimeError, match="at least two landmark pairs.*or choose a feature"):
+        register()
+    x, y, z = pairs.positions(source).T
+    for obj in (source, target):
+        paint(obj, "Depth", x + 0.5 * x * y + 0.3 * z**3)
+    register(feature="Depth")
+    assert "by a feature alone, 0 folds" in capfd.readouterr().out
+    goal = pairs.moved(pairs.positions(target), target.matrix_world)
+    apart = np.linalg.norm(pairs.positions(source, KEY) - goal, axis=1)
+    assert apart.max() < 1e-3 * pairs.size(goal)
+    target.vertex_groups.new(name="Nose").add([7], 1.0, "REPLACE")
+    for is_new in (False, True):
+        if is_new:
+            part("bridge.registrations")._registrations._found.clear()
+        bpy.ops.authalic.transfer()
+        assert "by a feature" + is_new * " (registered anew)" in capfd.readouterr().out
+        assert [g.weight for g in source.data.vertices[7].groups] == pytest.approx([1.0], abs=1e-3)
 
 
 def test_a_soft_landmark_only_pulls() -> None:

@@ -104,16 +104,14 @@ def morphed(registered: Registered, source: Side, target: Side, align: bool) -> 
 
 
 def followed(registered: Registered, source: Side, target: Side, align: bool, how: str) -> Floats:
-    """The places in the world of what the source leaves out, (k, 3), which follows its surroundings.
+    """The places in the world of the `followers` that the source leaves out, (k, 3).
 
     As `morphed` has the places of the source's points. Pieces keep their shapes or bend, as `how` says.
     """
-    rest = source.rest
-    if not len(rest.vertices):
-        return rest.points
-    places = np.asarray(
-        registered.native.follow(rest.points, pieces=rest.pieces, rigid_size=_RIGID_SIZE[how])
-    )
+    _, points, pieces = source.rest.followers
+    if not len(points):
+        return points
+    places = np.asarray(registered.native.follow(points, pieces=pieces, rigid_size=_RIGID_SIZE[how]))
     if not align:
         return moved(places, target.matrix)
     positions = np.asarray(registered.native.positions)

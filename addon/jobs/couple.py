@@ -56,23 +56,23 @@ class Couple:
         return self.pairs if method == "POINTS" else self.curves
 
     def check_feature(self, settings: Settings) -> None:
-        """Raises `CannotRegister` unless both objects have the feature of some settings, finite and varying."""
+        """Raises `CannotRegister` unless both objects have the feature of some settings, and it varies."""
         name = settings.that_count.feature
         if not name:
             return
         if name not in self.pulls.features:
             both = f"{self.source.name} and {self.target.name}"
             raise CannotRegister(f'{both} do not both have the vertex group or attribute "{name}"')
-        for side, signal in zip(self.sides, self.pulls.features[name], strict=True):
-            bad = side.vertices[~np.isfinite(signal) & (side.vertices >= 0)]
+        for each, signal in zip(self.sides, self.pulls.features[name], strict=True):
+            bad = each.vertices[~np.isfinite(signal) & (each.vertices >= 0)]
             if len(bad):
                 noun = "vertex" if len(bad) == 1 else "vertices"
                 raise CannotRegister(
-                    f'"{name}" is NaN or infinite at {noun} {messages.numbers(bad)} of {side.name}; '
+                    f'"{name}" is NaN or infinite at {noun} {messages.numbers(bad)} of {each.name}; '
                     "repair its values there"
                 )
             if not np.ptp(signal) > 0:
-                raise CannotRegister(f'"{name}" is the same all over {side.name}, and so tells nothing')
+                raise CannotRegister(f'"{name}" is the same all over {each.name}, and so tells nothing')
 
 
 def chosen(context: bpy.types.Context, feature: str = "") -> Couple:
@@ -167,7 +167,8 @@ def _check_rest(sides: Sequence[Side]) -> None:
     for each in sides:
         if not len(each.faces):
             raise CannotRegister(f"{each.name} has no faces without masked vertices; paint a smaller mask")
-    bad = sides[0].rest.vertices[~np.isfinite(sides[0].rest.points).all(axis=1)]
+    followers, points, _ = sides[0].rest.followers
+    bad = np.sort(followers[~np.isfinite(points).all(axis=1)])
     if len(bad):
         raise CannotRegister(
             f"{sides[0].name}: NaN or infinite coordinates at {'vertex' if len(bad) == 1 else 'vertices'} "

@@ -139,12 +139,12 @@ def _preview(couple: Couple, images: Floats, edges: Integers, align: bool) -> Pr
 
 
 def _positions(couple: Couple, registered: Registered, settings: Settings) -> Floats:
-    """All vertices (n, 3) of the source's mesh where the morph ends; loose ones stay."""
+    """All vertices (n, 3) of the source's mesh where the morph ends."""
     positions, vertices = couple.surfaces[0].positions.copy(), registered.source.vertices
     images = moved(bridge.morphed(registered, *couple.sides, settings.align), couple.to_source)
     positions[vertices[vertices >= 0]] = images[vertices >= 0]
     following = bridge.followed(registered, *couple.sides, settings.align, settings.followers)
-    positions[couple.sides[0].rest.vertices] = moved(following, couple.to_source)
+    positions[couple.sides[0].rest.followers[0]] = moved(following, couple.to_source)
     if not np.isfinite(positions.astype(np.float32)).all():
         raise CannotRegister("The morph is not finite; nothing was changed")
     return positions
@@ -182,6 +182,9 @@ def _facts(couple: Couple, registered: Registered) -> list[str]:
         source.rest.in_words(source.name, "followed"),
         target.rest.in_words(target.name, "left out"),
     )
+    loose = len(source.rest.loose)
+    if loose:
+        followed.append(f"{messages.count(loose, 'loose vertex')} of {source.name} followed")
     return [*registered.filled, *followed, *left]
 
 

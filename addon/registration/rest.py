@@ -2,7 +2,7 @@
 """What of a mesh is matched, one piece without its mask, and the rest, which follows. Plain numpy, no bpy."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,15 +18,31 @@ ATTACHED = -1
 
 @dataclass
 class Rest:
-    """The vertices (k,) of a mesh that have faces but are not matched.
+    """The vertices (k,) of a mesh that have faces but are not matched, and `loose` ones (l,) without faces.
 
-    `points` (k, 3) have the coordinates of the matched side. `pieces` (k,) number the pieces, and are
-    `ATTACHED` for vertices that hang on what is matched: the masked ones, and those that the mask cuts off.
+    `points` (k, 3) and `loose_points` (l, 3) have the coordinates of the matched side. `pieces` (k,) number
+    the pieces, and are `ATTACHED` for vertices that hang on what is matched: the masked ones, and those that
+    the mask cuts off.
     """
 
     vertices: Integers
     points: Floats
     pieces: Integers
+    loose: Integers
+    loose_points: Floats
+
+    def moved(self, matrix: Floats) -> "Rest":
+        """The rest with all points moved by a linear map (3, 3)."""
+        return replace(self, points=self.points @ matrix.T, loose_points=self.loose_points @ matrix.T)
+
+    @property
+    def followers(self) -> tuple[Integers, Floats, Integers]:
+        """All vertices that follow where the mesh goes, their points, and the pieces that they belong to."""
+        return (
+            np.concatenate([self.vertices, self.loose]),
+            np.concatenate([self.points, self.loose_points]),
+            np.concatenate([self.pieces, np.full(len(self.loose), ATTACHED)]),
+        )
 
     def in_words(self, name: str, what: str) -> list[str]:
         """The rest of an object, and what became of it: "2 other pieces of Body followed (128 vertices)"."""
@@ -87,15 +103,17 @@ def _chosen(faces: Integers, component: Integers, areas: Floats, marked: Sequenc
 
 
 def _rest(surface: Surface, mesh: Triangles, matched: Booleans) -> Rest:
-    """The vertices with faces that are in no matched triangle."""
+    """The vertices that are in no matched triangle."""
     count = len(surface.positions)
     is_matched, has_faces = np.zeros((2, len(mesh.positions)), bool)
     is_matched[mesh.triangles[matched]] = True
     has_faces[mesh.triangles] = True
     vertices = np.flatnonzero((has_faces & ~is_matched)[:count])
+    loose = np.flatnonzero(~has_faces[:count])
     pieces = np.full(len(mesh.positions), ATTACHED)
     if len(vertices):
         component = components.joined_by_edges(mesh.triangles)
         component[component == component[np.argmax(matched)]] = ATTACHED
         pieces[mesh.triangles] = component[:, None]
-    return Rest(vertices, surface.positions[vertices], pieces[vertices])
+    points = surface.positions
+    return Rest(vertices, points[vertices], pieces[vertices], loose, points[loose])

@@ -2,7 +2,7 @@
 """A surface to be registered, in the shape that it has in the world. Plain numpy, no bpy."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -84,7 +84,7 @@ def side(
         corners=np.ascontiguousarray(corners),
         polygons=mesh.polygons[matched],
         count=count,
-        rest=replace(rest, points=rest.points @ shape.T),
+        rest=rest.moved(shape),
     )
 
 

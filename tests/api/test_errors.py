@@ -142,7 +142,7 @@ def test_the_facts_of_an_error(call, expected):
     assert expected["kind"] in authalic.ERROR_KINDS
 
 
-def test_holes_are_vertices_of_the_loops_and_only_disk_maps_can_fill_them():
+def test_holes_are_vertices_of_the_loops_with_the_option_that_fills_them():
     with pytest.raises(authalic.MeshError, match="fill_holes=True") as caught:
         authalic.disk_map(*meshes.annulus())
     assert (caught.value.kind, caught.value.count) == ("several_boundaries", 2)
@@ -150,6 +150,13 @@ def test_holes_are_vertices_of_the_loops_and_only_disk_maps_can_fill_them():
     with pytest.raises(authalic.MeshError, match=r"^the source: .*2 boundary loops") as caught:
         authalic.register_disks(holed, holed, source_landmarks=[1], target_landmarks=[1])
     assert (caught.value.kind, caught.value.side) == ("several_boundaries", "source")
+    assert "fill_holes=True fills them for the time of the call" in str(caught.value)
+    ball, open_ball = meshes.icosphere(2), meshes.bumpy_cap()
+    with pytest.raises(authalic.MeshError, match=r"^the target: .*\(fill_holes=True") as caught:
+        authalic.register_spheres(ball, open_ball, source_landmarks=[1, 2], target_landmarks=[1, 2])
+    assert (caught.value.kind, caught.value.side) == ("open_surface", "target")
+    with pytest.raises(authalic.MeshError) as caught:
+        authalic.sphere_map(*open_ball)
     assert "fill_holes" not in str(caught.value)
 
 

@@ -206,9 +206,12 @@ def test_unequal_counts_are_refused(pair):
 
 def test_too_few_landmarks_are_refused():
     for empty in ([], np.array([], int), np.zeros(0)):
-        refused(with_landmarks(CAPS, empty, empty), "0 landmark pairs .* at least 1")
-        refused(with_landmarks(BALLS, empty, empty), "0 landmark pairs .* at least 2")
-    refused(with_landmarks(BALLS, *(marks[:1] for marks in BALLS[2:])), "1 landmark pairs? .* at least 2")
+        refused(with_landmarks(CAPS, empty, empty), "too few .* 0, give at least 1$")
+        refused(with_landmarks(BALLS, empty, empty), "too few .* 0, give at least 2, or features")
+    refused(
+        with_landmarks(BALLS, *(marks[:1] for marks in BALLS[2:])),
+        "too few .* 1, give at least 2",
+    )
 
 
 @both

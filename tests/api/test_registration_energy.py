@@ -90,7 +90,7 @@ def test_weights_of_pairs_are_positive(pair, value):
     error = refused(
         pair, authalic.MeshError, "weights must be .* at pair 2", energy="surface", weights=weights
     )
-    assert error.kind == "invalid_array"
+    assert (error.kind, error.indices, error.count) == ("invalid_array", (2,), 1)
 
 
 @both
@@ -113,8 +113,8 @@ def test_bad_features_are_refused_with_the_side(pair, side):
 
     for change, words in (
         (lambda signal: signal[:-1], r"of shape \(\d+, k\), one row per vertex"),
-        (lambda signal: spoiled(signal, np.nan), "NaN or infinite at vertices 3, 5"),
-        (lambda signal: spoiled(signal, np.inf), "NaN or infinite at vertices 3, 5"),
+        (lambda signal: spoiled(signal, np.nan), r"NaN or infinite at 2 vertices \(3, 5\)"),
+        (lambda signal: spoiled(signal, np.inf), r"NaN or infinite at 2 vertices \(3, 5\)"),
         (lambda signal: 0 * signal + 0.1, "constant in column 0"),
         (lambda signal: np.stack([signal] * 2, axis=1), "signals"),
         (lambda signal: signal[:, None, None], "of shape"),
@@ -124,12 +124,20 @@ def test_bad_features_are_refused_with_the_side(pair, side):
         error = refused(pair, authalic.MeshError, words, energy="surface", features=with_signal(change))
         assert error.kind == "invalid_array"
         assert error.side == side or "signals" in words
+        assert (error.indices, error.count) == (((3, 5), 2) if "NaN" in words else ((), 0))
 
 
 @both
 def test_features_come_in_pairs(pair):
     for wrong in (heights(pair.source), 5, features(pair)[:1]):
         refused(pair, authalic.MeshError, "features must be a pair", energy="surface", features=wrong)
+
+
+@both
+@pytest.mark.parametrize("weight", [1.0, 0.0, np.nan, [1.0]])
+def test_a_weight_of_features_that_are_not_given_is_refused(pair, weight):
+    error = refused(pair, ValueError, "there are none", energy="surface", feature_weight=weight)
+    assert error.kind == "invalid_option"
 
 
 @both
@@ -166,7 +174,7 @@ def test_soft_landmarks_are_not_missed(pair):
 
 
 def test_spheres_with_features_need_no_landmarks():
-    with pytest.raises(authalic.MeshError, match="0 landmark pairs") as caught:
+    with pytest.raises(authalic.MeshError, match=r"too few .* or features=") as caught:
         authalic.register_spheres(BALLS.source, BALLS.target, energy="surface")
     assert caught.value.kind == "too_few_landmarks"
     result = authalic.register_spheres(BALLS.source, BALLS.target, energy="surface", features=features(BALLS))

@@ -159,7 +159,7 @@ def test_no_points(onto_similar):
     ("points", "options", "message"),
     [
         ([[0, 0]], {}, r"points must be of shape \(n, 3\)"),
-        ([[0, 0, np.nan]], {}, "points must be finite, but is not finite at point 0"),
+        ([[0, 0, np.nan]], {}, "points must be finite, but is NaN or infinite at point 0"),
         ([[0, 0, 0]], {"pieces": [0, 1]}, r"pieces must be of shape \(1,\), one number per point"),
         ([[0, 0, 0]], {"pieces": [[0]]}, r"pieces must be of shape \(k,\), one number per point"),
         ([[0, 0, 0]], {"rigid_size": -1}, "rigid_size must be a number ≥ 0, but is -1"),

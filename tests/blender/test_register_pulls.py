@@ -132,7 +132,7 @@ def test_a_feature_that_tells_nothing_is_refused() -> None:
 def test_a_feature_alone_lays_closed_meshes_over_each_other(capfd: pytest.CaptureFixture[str]) -> None:
     source, target = balls()
     part("landmarks.points").clear(source)
-    with pytest.raises(RuntimeError, match="at least two landmark pairs.*or choose a feature"):
+    with pytest.raises(RuntimeError, match=r"at least two landmark pairs.*or choose a feature"):
         register()
     x, y, z = pairs.positions(source).T
     for obj in (source, target):

@@ -66,7 +66,7 @@ kinds! {
         SeveralBoundaries = "several_boundaries",
         /// A seam is no edge: pairs of vertices.
         SeamNotEdge = "seam_not_edge",
-        /// An array has the wrong shape or content.
+        /// An array has the wrong shape or content: the rows, where some are at fault.
         InvalidArray = "invalid_array",
         /// An option has a value outside its range.
         InvalidOption = "invalid_option",

@@ -24,7 +24,9 @@ pub enum LandmarkError {
     },
 
     /// Too few landmarks to lay one surface over the other.
-    #[error("{found} landmark pairs do not say how the surfaces lie over each other: give at least {needed}")]
+    #[error(
+        "too few landmark pairs to say how the surfaces lie over each other: {found}, give at least {needed}"
+    )]
     TooFew {
         /// How many pairs were given.
         found: usize,

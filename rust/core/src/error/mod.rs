@@ -62,6 +62,21 @@ pub enum Error {
         expected: String,
     },
 
+    /// Some rows of an array have the wrong content.
+    #[error("{name} must be {expected}, but is {found} at {}", .rows.named(.row))]
+    InvalidRows {
+        /// The argument.
+        name: &'static str,
+        /// What was given in the first of the rows.
+        found: String,
+        /// What is accepted.
+        expected: String,
+        /// What a row is of: "vertex", "pair" or "point".
+        row: &'static str,
+        /// The rows at fault.
+        rows: Elements,
+    },
+
     /// An option has a value outside its range.
     #[error("{name} must be {expected}, but is {found}")]
     InvalidOption {
@@ -96,7 +111,7 @@ impl Error {
             Self::Landmarks(error) => error.kind(),
             Self::Curves(error) => error.kind(),
             Self::Numerics(error) => error.kind(),
-            Self::InvalidArray { .. } => ErrorKind::InvalidArray,
+            Self::InvalidArray { .. } | Self::InvalidRows { .. } => ErrorKind::InvalidArray,
             Self::InvalidOption { .. } => ErrorKind::InvalidOption,
             Self::OfSurface { error, .. } => error.kind(),
             Self::CancelledEarly => ErrorKind::Cancelled,
@@ -110,7 +125,7 @@ impl Error {
             Self::Map(error) => error.side(),
             Self::Landmarks(error) => error.side(),
             Self::Curves(error) => error.side(),
-            Self::InvalidArray { name, .. } => Side::of_argument(name),
+            Self::InvalidArray { name, .. } | Self::InvalidRows { name, .. } => Side::of_argument(name),
             _ => None,
         }
     }
@@ -141,6 +156,7 @@ impl Error {
             Self::Landmarks(error) => error.elements(),
             Self::Curves(error) => error.elements(),
             Self::Numerics(error) => error.elements(),
+            Self::InvalidRows { rows, .. } => Some(rows),
             Self::OfSurface { error, .. } => error.elements(),
             _ => None,
         }

@@ -126,7 +126,13 @@ fn check_signals(name: &'static str, signals: ArrayView2<'_, f64>, mesh: &Triang
     let is_bad = |&row: &usize| signals.row(row).iter().any(|value| !value.is_finite());
     match Elements::collect((0..rows).filter(is_bad)) {
         None => Ok(()),
-        Some(bad) => invalid(format!("NaN or infinite at vertices {bad}"), "finite".into()),
+        Some(rows) => Err(Error::InvalidRows {
+            name,
+            found: "NaN or infinite".into(),
+            expected: "finite".into(),
+            row: "vertex",
+            rows,
+        }),
     }
 }
 

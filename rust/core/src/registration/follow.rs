@@ -19,7 +19,7 @@ use ndarray::{Array2, ArrayView1, ArrayView2};
 use super::correspondence::Correspondence;
 use crate::alignment::rotation::{rotate, rotation_by_covariance};
 use crate::arrays::{from_vectors, rows_of, vectors};
-use crate::error::Error;
+use crate::error::{Elements, Error};
 use crate::location::NearestPoint;
 use crate::parallel;
 use crate::vector::Vector3;
@@ -80,8 +80,9 @@ fn check(points: &[Vector3], pieces: ArrayView1<'_, i64>, rigid_size: f64) -> Re
         let expected = format!("of shape ({},), one number per point", points.len());
         return invalid("pieces", format!("of shape ({},)", pieces.len()), expected);
     }
-    if let Some(point) = points.iter().position(|point| !point.is_finite()) {
-        return invalid("points", format!("not finite at point {point}"), "finite".into());
+    if let Some(rows) = Elements::collect((0..points.len()).filter(|&point| !points[point].is_finite())) {
+        let (found, expected) = ("NaN or infinite".into(), "finite".into());
+        return Err(Error::InvalidRows { name: "points", found, expected, row: "point", rows });
     }
     if rigid_size >= 0.0 {
         return Ok(());

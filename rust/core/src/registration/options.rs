@@ -3,7 +3,7 @@
 
 use super::features::{Features, Signals};
 use super::surface::FaceEnergy;
-use crate::error::Error;
+use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::options::check_angle_weight;
 
@@ -79,16 +79,27 @@ impl RegistrationOptions<'_> {
 
     fn check_pair_weights(&self, n_pairs: usize) -> Result<(), Error> {
         let Some(weights) = self.weights else { return Ok(()) };
-        let found = if weights.len() != n_pairs {
-            format!("of shape ({},)", weights.len())
-        } else if let Some(pair) = weights.iter().position(|weight| weight.is_nan() || *weight <= 0.0) {
-            format!("{} at pair {pair}", weights[pair])
-        } else {
-            return Ok(());
-        };
-        let expected =
-            format!("of shape ({n_pairs},), one number > 0 per pair of landmarks, infinity for exact ones");
-        Err(Error::InvalidArray { name: "weights", found, expected })
+        let (name, one_per_pair) =
+            ("weights", "one number > 0 per pair of landmarks, infinity for exact ones");
+        if weights.len() != n_pairs {
+            let expected = format!("of shape ({n_pairs},), {one_per_pair}");
+            return Err(Error::InvalidArray {
+                name,
+                found: format!("of shape ({},)", weights.len()),
+                expected,
+            });
+        }
+        let is_bad = |&pair: &usize| weights[pair].is_nan() || weights[pair] <= 0.0;
+        match Elements::collect((0..n_pairs).filter(is_bad)) {
+            None => Ok(()),
+            Some(rows) => Err(Error::InvalidRows {
+                name,
+                found: weights[rows.first[0]].to_string(),
+                expected: one_per_pair.into(),
+                row: "pair",
+                rows,
+            }),
+        }
     }
 
     /// Refuses what only the energy between the surfaces weighs.

@@ -7,7 +7,7 @@ use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays::{as_array, converted, shape_words};
-use crate::errors::bad_array;
+use crate::errors::{bad_array, bad_option};
 
 /// Signals of both surfaces, as plain data.
 pub(super) struct GivenFeatures {
@@ -22,7 +22,14 @@ impl GivenFeatures {
         features: Option<&Bound<'_, PyAny>>,
         weight: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Option<Self>> {
-        let Some(features) = features else { return Ok(None) };
+        let Some(features) = features else {
+            return weight.map_or(Ok(None), |_| {
+                Err(bad_option(
+                    "feature_weight weighs features, but there are none: give features, or leave it out"
+                        .into(),
+                ))
+            });
+        };
         let Ok((source, target)) = features.extract::<(Bound<'_, PyAny>, Bound<'_, PyAny>)>() else {
             let found = features.get_type().name()?.to_string();
             let expected = "a pair (source_values, target_values)".into();

@@ -142,6 +142,17 @@ def test_named_operators_exist(document: Path) -> None:
     assert {*named, *(f"authalic.{name}" for name in also)} <= known
 
 
+def test_all_operators_are_named() -> None:
+    sources = [path.read_text(encoding="utf-8") for path in (ROOT / "addon" / "operators").glob("*.py")]
+    classes = [
+        part for source in sources for part in source.split("\nclass ")[1:] if '"INTERNAL"' not in part
+    ]
+    known = {name for part in classes for name in re.findall(r'bl_idname = "authalic\.(\w+)"', part)}
+    text = (ROOT / "docs" / "blender.md").read_text(encoding="utf-8")
+    assert len(known) > 20
+    assert known <= set(re.findall(r"\w+", text))
+
+
 def test_options_in_tables_are_labels_of_the_extension() -> None:
     """The first cells of the tables of options, *Label* or *Label*, *Label*."""
     text = (ROOT / "docs" / "blender.md").read_text(encoding="utf-8")

@@ -89,7 +89,7 @@ class AUTHALIC_OT_landmark_clear(_PointOperator, bpy.types.Operator):
     def run(self, _context: bpy.types.Context, source: MeshObject) -> Status:
         count = len(source.authalic_landmarks)
         landmark_points.clear(source)
-        self.report({"INFO"}, f"Removed {count} landmarks of {source.name}")
+        self.report({"INFO"}, f"Removed {messages.count(count, 'landmark')} of {source.name}")
         return {"FINISHED"}
 
 

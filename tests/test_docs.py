@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 from test_architecture import ADDON_ROOMS, CORE_ROOMS, HYPERBOLIC_ROOMS
 
+from shell import version
+
 ROOT = Path(__file__).resolve().parents[1]
-GUIDES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+GUIDES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 DOCUMENTS = [
     *GUIDES,
     *(ROOT / "ARCHITECTURE.md", ROOT / "CHANGELOG.md"),
@@ -132,6 +134,27 @@ def test_named_benches_and_parts_exist(document: Path) -> None:
         assert f'"{subject}"' in launcher, subject
     for part in re.findall(r"--parts ([\w-]+)", text):
         assert part in sources, part
+
+
+def test_the_reference_has_every_public_name_once() -> None:
+    package, files = pytest.importorskip("authalic"), pytest.importorskip("authalic.io")
+    pages = sorted((ROOT / "docs" / "api").glob("*.md"))
+    text = "".join(page.read_text(encoding="utf-8") for page in pages)
+    listed = re.findall(r"(?m)^\.\. (?:auto\w+|py:data):: (\w+)$", text)
+    assert sorted(listed) == sorted({*package.__all__, *files.__all__} - {"__version__"})
+    assert set(listed) <= set(quoted(ROOT / "docs" / "api" / "index.md"))
+
+
+def test_pictures_of_pages_have_their_examples() -> None:
+    for document in GUIDES:
+        for name in re.findall(r"sphx_glr_(\w+)_\d{3}\.png", document.read_text(encoding="utf-8")):
+            assert (ROOT / "docs" / "examples" / f"{name}.py").exists(), name
+
+
+def test_the_citation_is_of_this_version() -> None:
+    text = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert re.findall(r"(?m)^version: (.+)$", text) == [version()]
+    assert re.findall(r"(?m)^license: (.+)$", text) == ["[MIT, Apache-2.0]"]
 
 
 @documents

@@ -149,17 +149,17 @@ def test_scripts_that_fail_in_a_window_are_run_once_more(monkeypatch, tmp_path):
 ALL = {step.name for step in steps.STEPS}
 IN_BLENDER = {"blender-4.2", "blender-5"}
 INSTALLED = IN_BLENDER | {"window"}
-OF_THE_WHEEL = {"wheel", "types", "docstrings", "python", "extension"} | INSTALLED
+OF_THE_WHEEL = {"wheel", "types", "docstrings", "python", "extension", "docs"} | INSTALLED
 
 
 @pytest.mark.parametrize(
     ("file", "expected"),
     [
-        ("README.md", {"python"}),
-        ("docs/comparison.jpg", {"python"}),
-        ("docs/conf.py", {"ruff", "python"}),
-        ("docs/theory/energy.md", {"python"}),
-        ("docs/blender.md", {"python", "extension"} | IN_BLENDER),
+        ("README.md", {"python", "docs"}),
+        ("docs/comparison.jpg", {"python", "docs"}),
+        ("docs/conf.py", {"ruff", "python", "docs"}),
+        ("docs/theory/energy.md", {"python", "docs"}),
+        ("docs/blender.md", {"python", "extension", "docs"} | IN_BLENDER),
         ("rust/core/src/disk/mod.rs", ALL),
         ("rust/core/README.md", ALL),
         ("rust/core/tests/it/disk.rs", {"rustfmt", "clippy", "rust"}),
@@ -181,7 +181,8 @@ OF_THE_WHEEL = {"wheel", "types", "docstrings", "python", "extension"} | INSTALL
         ("scripts/docs", {"ruff", "python"}),
         ("scripts/lib/bench/tables/main.py", {"ruff", "python"}),
         ("scripts/requirements/peer-lapy.txt", set()),
-        ("scripts/requirements/docs.txt", set()),
+        ("scripts/requirements/docs.txt", {"docs"}),
+        ("CITATION.cff", {"python"}),
         ("scripts/requirements/docstrings.txt", {"docstrings"}),
         ("scripts/requirements/dev.txt", ALL),
         ("scripts/lib/steps.py", ALL),

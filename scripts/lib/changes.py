@@ -14,7 +14,7 @@ Selection = Dict[str, Tuple[str, ...]]
 
 BLENDER = ("blender-4.2", "blender-5")
 INSTALLED = (*BLENDER, "window")
-BUILT = ("wheel", "types", "docstrings", "python", "extension", *INSTALLED)
+BUILT = ("wheel", "types", "docstrings", "python", "extension", "docs", *INSTALLED)
 RUST = ("rustfmt", "clippy", "rust", "rustdoc")
 EVERYTHING = ("environments", *RUST, "ruff", *BUILT)
 STRUCTURE = ("tests/test_architecture.py", "tests/test_docs.py")
@@ -55,13 +55,17 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("scripts/docs", {"ruff": (), "python": PROJECT}),
     ("scripts/demo", {"ruff": (), "python": PROJECT}),
     ("scripts/requirements/docstrings.txt", _whole("docstrings")),
-    ("scripts/requirements/docs.txt", {}),
+    ("scripts/requirements/docs.txt", _whole("docs")),
     ("scripts/requirements/peer-*", {}),
     # The manual, which the zip holds.
-    ("docs/blender.md", {"python": PROJECT, "extension": (), **dict.fromkeys(BLENDER, _OF_MANUAL)}),
-    ("docs/*.py", {"ruff": (), "python": PROJECT}),
-    ("docs/*", {"python": PROJECT}),
-    ("*.md", {"python": PROJECT}),
+    (
+        "docs/blender.md",
+        {"python": PROJECT, "extension": (), "docs": (), **dict.fromkeys(BLENDER, _OF_MANUAL)},
+    ),
+    ("docs/*.py", {"ruff": (), "python": PROJECT, "docs": ()}),
+    ("docs/*", {"python": PROJECT, "docs": ()}),
+    ("*.md", {"python": PROJECT, "docs": ()}),
+    ("CITATION.cff", {"python": PROJECT}),
     ("*", _whole(*EVERYTHING)),
 )
 

@@ -11,6 +11,7 @@ from threading import Lock
 from typing import Callable
 
 import distribution
+import documentation
 import environment
 import windows
 from environment import Environment
@@ -148,6 +149,11 @@ def test_python(log: Path, places: tuple[str, ...] = _PYTHON_TESTS) -> Count:
     return _pytest(environment.dev(), places, {}, log, _SIDE_BY_SIDE)
 
 
+def build_documentation(log: Path) -> Count:
+    documentation.build(log)
+    return Count()
+
+
 def build_extension(log: Path) -> Count:
     _extension(environment.any_blender(), log)
     return Count()
@@ -186,6 +192,12 @@ STEPS = (
     Step("blender-4.2", "tests of the installed extension in Blender 4.2", test_blender_oldest, "blender"),
     Step(
         "blender-5", "tests of the installed extension in the newest Blender", test_blender_newest, "blender"
+    ),
+    Step(
+        "docs",
+        "the site of the documentation, with the examples of its gallery",
+        build_documentation,
+        "blender",
     ),
     Step("window", "tests of the installed extension in a real window", test_in_window, "blender"),
 )

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from sphinx.application import Sphinx
+from sphinx.util.logging import getLogger
 
 import authalic
 
@@ -45,6 +46,7 @@ sphinx_gallery_conf = {
     "filename_pattern": r"plot_",
     "ignore_pattern": r"pictures\.py",
     "download_all_examples": False,
+    "write_computation_times": False,
     "show_memory": False,
     "show_signature": False,
     "min_reported_time": 1e9,
@@ -85,6 +87,17 @@ def keep_bars(app: Sphinx, what: str, name: str, subject: object, options: objec
     ]
 
 
+def warn_of_foreign_files(app: Sphinx, failure: Exception | None) -> None:
+    """Pages must be whole without a network: they load no script, style or picture from elsewhere."""
+    foreign = re.compile(
+        r"<(?:script|img|iframe|link rel=\"stylesheet\")[^>]* (?:src|href)=\"(?:https?:)?//[^\"]*"
+    )
+    for page in sorted(Path(app.outdir).rglob("*.html")):
+        for tag in foreign.findall(page.read_text(encoding="utf-8")):
+            getLogger(__name__).warning("%s loads from elsewhere: %s", page.name, tag)
+
+
 def setup(app: Sphinx) -> None:
+    app.connect("build-finished", warn_of_foreign_files)
     app.connect("autodoc-process-docstring", keep_bars)
     app.connect("source-read", link_to_pages)

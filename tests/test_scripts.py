@@ -157,6 +157,7 @@ OF_THE_WHEEL = {"wheel", "types", "docstrings", "python", "extension", "docs"} |
     [
         ("README.md", {"python", "docs"}),
         ("docs/comparison.jpg", {"python", "docs"}),
+        ("docs/tutorials/artist.md", {"python", "docs"} | IN_BLENDER),
         ("docs/conf.py", {"ruff", "python", "docs"}),
         ("docs/theory/energy.md", {"python", "docs"}),
         ("docs/blender.md", {"python", "extension", "docs"} | IN_BLENDER),

@@ -19,6 +19,7 @@ RUST = ("rustfmt", "clippy", "rust", "rustdoc")
 EVERYTHING = ("environments", *RUST, "ruff", *BUILT)
 STRUCTURE = ("tests/test_architecture.py", "tests/test_docs.py")
 PROJECT = (*STRUCTURE, "tests/test_scripts.py")
+_OF_TUTORIAL = ("tests/blender/test_tutorial.py",)
 _OF_MANUAL = ("tests/blender/test_preferences.py",)
 
 
@@ -62,6 +63,7 @@ _RULES: tuple[tuple[str, Selection], ...] = (
         "docs/blender.md",
         {"python": PROJECT, "extension": (), "docs": (), **dict.fromkeys(BLENDER, _OF_MANUAL)},
     ),
+    ("docs/tutorials/artist.md", {"python": PROJECT, "docs": (), **dict.fromkeys(BLENDER, _OF_TUTORIAL)}),
     ("docs/*.py", {"ruff": (), "python": PROJECT, "docs": ()}),
     ("docs/*", {"python": PROJECT, "docs": ()}),
     ("*.md", {"python": PROJECT, "docs": ()}),

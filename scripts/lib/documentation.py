@@ -22,10 +22,10 @@ _ALSO = {
 """What pages are made of or link to outside docs/, and its name in the copy; docs/conf.py turns the links."""
 
 
-def build(log: Path | None = None) -> None:
+def build(wheel: Path, log: Path | None = None) -> None:
     """Makes all pages anew; every warning is an error. Nothing comes from the network but the environment."""
     place = environment.docs()
-    distribution.install_wheel(distribution.build_wheel(environment.dev(), log=log), place, log)
+    distribution.install_wheel(wheel, place, log)
     _copy_sources()
     sphinx = [place.python, "-m", "sphinx", "--builder", "html", "--doctree-dir", _CACHE]
     run([*sphinx, "--fail-on-warning", "--quiet", _SOURCE, PAGES], log=log)

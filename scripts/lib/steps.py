@@ -87,6 +87,7 @@ def make_environments(log: Path) -> Count:
     environment.dev()
     environment.any_blender()
     environment.blender_oldest()
+    environment.docs()
     return Count()
 
 
@@ -150,7 +151,9 @@ def test_python(log: Path, places: tuple[str, ...] = _PYTHON_TESTS) -> Count:
 
 
 def build_documentation(log: Path) -> Count:
-    documentation.build(log)
+    with _BUILDING:
+        wheel = distribution.build_wheel(environment.dev(), log=log)
+    documentation.build(wheel, log)
     return Count()
 
 

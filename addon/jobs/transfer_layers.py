@@ -213,7 +213,7 @@ def _registration(
 
 def _last(couple: Couple) -> RegistrationSettings:
     """The settings of the last registration with the target, or a method for which there are landmarks."""
-    boundaries = any(is_open(side) for side in couple.sides)
+    boundaries = all(is_open(side) for side in couple.sides)
     last = last_registration.settings(couple.source)
     by_feature = last is not None and bool(last.that_count.feature)
     can = {"POINTS": bool(couple.pairs) or by_feature, "CURVES": bool(couple.curves) or boundaries}

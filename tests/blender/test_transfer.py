@@ -882,6 +882,16 @@ def test_one_object_that_cannot_does_not_stop_the_others(capfd: pytest.CaptureFi
         transfer(method="POINTS")
 
 
+def test_without_landmarks_they_are_asked_for() -> None:
+    """Also where one of the two is open, as boundaries alone would tell where both were."""
+    source, target = meshes.add_grid("Sheet", n=8), meshes.icosphere(2)
+    source.authalic_target = target
+    add_group(target, "Top", np.ones(len(target.data.vertices)))
+    meshes.select(source)
+    with pytest.raises(RuntimeError, match="Sheet needs at least two landmark pairs"):
+        transfer()
+
+
 def test_several_objects_are_one_step_of_undo() -> None:
     _, target = flock()
     random_uv(target, "Map")

@@ -36,6 +36,7 @@ HYPERBOLIC_ROOMS = (
     {"harmonic"},
     {"between", "warnings"},
     {"assembly"},
+    {"filling"},
     {"register", "structure"},
 )
 

@@ -12,7 +12,7 @@ import authalic
 from ..messages import problems
 from ..registration import elements
 from ..registration.curves import check_curves, registered_by_curves
-from ..registration.domain import domain
+from ..registration.domain import domain, filled_in_words
 from ..registration.kept import Kept, fingerprint
 from ..registration.piece import check_piece
 from ..registration.points import check_landmarks
@@ -175,12 +175,15 @@ def _registered_by_curves(
     paths = check_curves(sides, curves, [boundaries(pieces) for pieces in patches])
     native = make(
         *surfaces,
-        source_curves=paths[0],
-        target_curves=paths[1],
+        source_curves=paths.source,
+        target_curves=paths.target,
+        fill_holes=any(paths.holes),
         **options,
         **watch.of(make),
     )
-    return registered_by_curves(native, sides, curves)
+    registered = registered_by_curves(native, sides, curves)
+    registered.filled = filled_in_words(sides, paths.holes)
+    return registered
 
 
 def _in_library(side: Side) -> tuple[Any, list[authalic.Patch]]:
@@ -213,7 +216,7 @@ def _registered_by_points(
     )
     names = [name for name, _, _ in pairs]
     registered = registered_by_points(native, sides, common.shape, landmarks, names)
-    registered.filled = common.in_words(sides)
+    registered.filled = filled_in_words(sides, common.holes)
     if settings.is_pulled:
         registered.energy = float("nan")
     return registered

@@ -30,13 +30,14 @@ class Domain:
     outlines: list[Integers]
     holes: list[int]
 
-    def in_words(self, sides: tuple[Side, Side]) -> list[str]:
-        """Which holes are filled."""
-        counts = [(count, side.name) for count, side in zip(self.holes, sides, strict=True) if count]
-        return [
-            f"{messages.count(count, 'hole')} of {name} {'was' if count == 1 else 'were'} filled for the map"
-            for count, name in counts
-        ]
+
+def filled_in_words(sides: tuple[Side, Side], holes: Sequence[int]) -> list[str]:
+    """How many holes of either side are filled."""
+    counts = [(count, side.name) for count, side in zip(holes, sides, strict=True) if count]
+    return [
+        f"{messages.count(count, 'hole')} of {name} {'was' if count == 1 else 'were'} filled for the map"
+        for count, name in counts
+    ]
 
 
 def domain(sides: tuple[Side, Side], patches: Sequence[Sequence[Patch]], wanted: str) -> Domain:
@@ -66,7 +67,7 @@ def domain(sides: tuple[Side, Side], patches: Sequence[Sequence[Patch]], wanted:
 def _loops(side: Side, patches: Sequence[Patch]) -> list[Integers]:
     """The boundary loops of one side, which must be a single piece without handles, the longest first."""
     check_piece(side, patches)
-    return sorted(boundaries(patches), key=lambda loop: -_length(side, loop))
+    return sorted(boundaries(patches), key=lambda loop: -length(side, loop))
 
 
 def _natural(sides: tuple[Side, Side], loops: Sequence[Sequence[Integers]]) -> str:
@@ -74,16 +75,16 @@ def _natural(sides: tuple[Side, Side], loops: Sequence[Sequence[Integers]]) -> s
     if not all(loops):
         return "SPHERE"
     have_one = all(len(holes) == 1 for holes in loops)
-    outlines = [_is_outline(side, holes[0]) for side, holes in zip(sides, loops, strict=True)]
+    outlines = [is_outline(side, holes[0]) for side, holes in zip(sides, loops, strict=True)]
     return "DISK" if all(outlines) or (have_one and not any(outlines)) else "SPHERE"
 
 
-def _is_outline(side: Side, loop: Integers) -> bool:
+def is_outline(side: Side, loop: Integers) -> bool:
     """Whether a boundary loop goes around a surface, as a neck does, and is no hole in it, as a mouth is."""
     area = triangulation.areas(side.points[side.faces]).sum()
-    return bool(_length(side, loop) ** 2 > _OUTLINE * 4 * np.pi * area)
+    return bool(length(side, loop) ** 2 > _OUTLINE * 4 * np.pi * area)
 
 
-def _length(side: Side, loop: Integers) -> float:
+def length(side: Side, loop: Integers) -> float:
     corners = side.points[loop]
     return float(np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1).sum())

@@ -8,6 +8,8 @@ from ..messages import problems
 from ..messages.problems import FLIP, Problem
 from .sides import CurvePair, PointPair, Side, is_open
 
+OUTLINE = "the outline"
+"""The name of the curve after all others, where the outlines of both sides are one."""
 _SIDES = ("source", "target")
 
 
@@ -15,7 +17,7 @@ def in_words(
     error: Problem, sides: tuple[Side, Side], pairs: Sequence[PointPair] | Sequence[CurvePair]
 ) -> str:
     """The sentence for an error of a registration of two sides by pairs (name, source, target)."""
-    names = [name for name, _, _ in pairs]
+    names = [*(name for name, _, _ in pairs), OUTLINE]
     if error.kind == "mirrored" and _any_open(sides):
         return (
             f"the curves fit far better when one surface is mirrored: {FLIP}, or mirror one "

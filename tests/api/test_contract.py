@@ -138,6 +138,7 @@ KEYWORDS = {
         "features": None,
         "feature_weight": None,
         "position_weight": 0.0,
+        "fill_holes": False,
         "metric": "newton",
         "solver": "newton",
         "max_iterations": None,

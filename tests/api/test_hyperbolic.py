@@ -38,6 +38,7 @@ def test_all_but_the_surfaces_is_keyword_only():
         "features": None,
         "feature_weight": None,
         "position_weight": 0.0,
+        "fill_holes": False,
         "metric": "newton",
         "solver": "newton",
         "max_iterations": None,

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+import bmesh
 import bpy
 import curving
 import drawing
@@ -66,6 +67,17 @@ def onto_another_sphere() -> tuple[MeshObject, MeshObject]:
     target.matrix_world = TILTED
     curves = [[curving.route(obj, *stops) for obj in (source, target)] for stops in ROUTES]
     return couple(source, target, curves)
+
+
+def ring_around(obj: MeshObject, vertex: int) -> list[int]:
+    """The closed path around a vertex of a mesh of triangles."""
+    around = [list(face.vertices) for face in obj.data.polygons if vertex in face.vertices]
+    turned = [face[face.index(vertex) :] + face[: face.index(vertex)] for face in around]
+    following = {first: second for _, first, second in turned}
+    ring = [turned[0][1]]
+    while len(ring) <= len(following):
+        ring.append(following[ring[-1]])
+    return ring
 
 
 def from_polyline(points: Array, corners: Any) -> Array:
@@ -137,7 +149,7 @@ def test_loops() -> None:
 
 
 def test_align_and_animate() -> None:
-    source, _ = balls(TILTED)
+    source, _ = balls(TILTED, count=3)
     before = pairs.positions(source)
     register(align=True, animate=True, frame_end=20)
     np.testing.assert_allclose(pairs.positions(source, KEY), before, atol=0.01 * pairs.size(before))
@@ -253,12 +265,61 @@ def test_curve_that_meets_the_boundary() -> None:
     refusal(r'Curve "Rim" meets the boundary of Sheet at vertices 0, 1, 2; end it inside', source)
 
 
-def test_other_boundaries() -> None:
+@pytest.mark.parametrize("swapped", [False, True])
+def test_other_boundaries_are_filled_and_outlines_matched(
+    swapped: bool, capfd: pytest.CaptureFixture[str]
+) -> None:
+    vertices, faces = meshes.grid(n=8)
+    gone = 27
+    holed = meshes.add(vertices, [face for number, face in enumerate(faces) if number != gone], "Holed")
+    sheet = meshes.add_grid("Sheet", n=8)
+    source, target = (sheet, holed) if swapped else (holed, sheet)
+    couple(source, target, [((10, 11, 12), (10, 11, 12))])
+    assert register() == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "1 hole of Holed was filled for the map" in said and "0 folds" in said
+    key = pairs.positions(source, f"Morph → {target.name}")
+    assert np.abs(key - vertices).max() < 0.04  # all but the filling, which is flatter, is alike
+    border = np.flatnonzero(np.abs(np.abs(vertices[:, :2]).max(axis=1) - 1) < 1e-6)
+    np.testing.assert_allclose(key[border], vertices[border], atol=1e-5)
+    target.vertex_groups.new(name="Edge").add([0], 1.0, "REPLACE")
+    assert bpy.ops.authalic.transfer() == {"FINISHED"}
+    assert "by landmark curves" in capfd.readouterr().out
+
+
+def test_a_curve_that_meets_an_outline_is_named_beside_filled_holes() -> None:
     vertices, faces = meshes.grid(n=8)
     holed = meshes.add(vertices, [face for number, face in enumerate(faces) if number != 27], "Holed")
-    sheet = meshes.add_grid("Twin", n=8)
-    couple(holed, sheet, [((10, 11, 12), (10, 11, 12))])
-    refusal("Holed has 2 open boundaries and Twin 1 open boundary, without those that are curves", holed)
+    couple(holed, meshes.add_grid("Sheet", n=8), [((0, 1, 2), (10, 11, 12))])
+    refusal('Holed: curves "Curve 1" and "the outline" meet', holed)
+
+
+def test_an_open_mesh_onto_a_closed_one_by_curves(capfd: pytest.CaptureFixture[str]) -> None:
+    """The rim of the hole is a curve of the source alone; there the target has a ring of edges."""
+    source, _ = balls(TILTED, count=3)
+    points = pairs.positions(source)
+    top = int(points[:, 2].argmax())
+    ring = ring_around(source, top)
+    edit = bmesh.new()
+    edit.from_mesh(source.data)
+    edit.verts.ensure_lookup_table()
+    bmesh.ops.delete(edit, geom=[edit.verts[top]], context="VERTS")
+    edit.to_mesh(source.data)
+    edit.free()
+    after = [vertex - (vertex > top) for vertex in ring]
+    curving.add(after, ring, name="Rim")
+    assert register() == {"FINISHED"}
+    assert "1 hole of Icosphere was filled for the map" in capfd.readouterr().out
+    key = pairs.positions(source, KEY)
+    goal = pairs.moved(np.delete(points, top, axis=0), TILTED)
+    assert np.abs(key - goal).max() < 0.02 * pairs.size(goal)
+    np.testing.assert_allclose(key[after[:-1]], goal[after[:-1]], atol=1e-4)
+
+
+def test_open_and_closed_without_curves_need_one() -> None:
+    source = meshes.add_grid("Sheet", n=8)
+    couple(source, meshes.icosphere(2), [])
+    refusal("Sheet needs a landmark curve", source)
 
 
 def test_edges_without_faces() -> None:

@@ -624,6 +624,7 @@ def register_hyperbolic(
     features: tuple[ArrayLike, ArrayLike] | None = None,
     feature_weight: ArrayLike | None = None,
     position_weight: float = 0.0,
+    fill_holes: bool = False,
     metric: Literal["newton", "ricci_flow"] = "newton",
     solver: Literal["newton", "heat"] = "newton",
     max_iterations: int | None = None,

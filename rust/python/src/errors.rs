@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The two exceptions of the package, the errors that become them, and the facts that exceptions and warnings carry.
 
-use authalic::{Elements, Error, ErrorKind, LandmarkError, Side, Warning, WarningKind};
+use authalic::{CurveError, Elements, Error, ErrorKind, LandmarkError, Side, Warning, WarningKind};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -104,6 +104,9 @@ fn in_python_words(error: &Error) -> String {
             ) => format!("{error} (fill_holes=True fills them for the time of the call)"),
             _ => error.to_string(),
         },
+        Error::Curves(CurveError::LoopCounts { .. } | CurveError::LoopSides { .. }) => {
+            format!("{error} (fill_holes=True fills them for the time of the call)")
+        }
         Error::Landmarks(LandmarkError::TooFew { needed: 2, .. }) => {
             format!("{error}, or features=, with which any number will do")
         }

@@ -341,6 +341,10 @@ fn to_segment(x: Vector3, [from, to]: [Vector3; 2]) -> f64 {
 }
 
 /// The figures of a map of a surface into space.
-fn figures(mesh: &TriangleMesh, positions: &[Vector3], folded: Vec<usize>) -> Result<Distortion, Error> {
+pub(super) fn figures(
+    mesh: &TriangleMesh,
+    positions: &[Vector3],
+    folded: Vec<usize>,
+) -> Result<Distortion, Error> {
     distortion_in_space(mesh.points(), mesh.faces(), positions, folded, mesh.face_areas())
 }

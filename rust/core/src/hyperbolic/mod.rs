@@ -24,6 +24,7 @@
 mod assembly;
 mod between;
 mod features;
+mod filling;
 mod harmonic;
 mod metric;
 pub(crate) mod moebius;

@@ -52,6 +52,8 @@ pub struct HyperbolicOptions<'a> {
     pub heat_steps: usize,
     /// Largest component of the gradient at which the heat diffusion ends.
     pub heat_tolerance: f64,
+    /// Fill all boundary loops, but those along which a curve and its partner run, for the time of the call.
+    pub fill_holes: bool,
     /// The vertices of source and target on spheres around the origin, which lay the surfaces over each other; they
     /// need not be aligned. `None`: conformal maps.
     pub spheres: Option<[ArrayView2<'a, f64>; 2]>,
@@ -69,6 +71,7 @@ impl Default for HyperbolicOptions<'_> {
             solver: HarmonicSolver::default(),
             heat_steps: 2000,
             heat_tolerance: 1e-6,
+            fill_holes: false,
             spheres: None,
         }
     }

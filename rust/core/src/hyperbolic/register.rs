@@ -8,6 +8,7 @@ use super::features::piece::Piece;
 use super::features::pieces::pieces;
 use super::features::placement::placed;
 use super::features::regions::divided;
+use super::filling;
 use super::harmonic::piece_map::map_piece;
 use super::options::{HarmonicSolver, HyperbolicEnergy, HyperbolicOptions};
 use super::slice::isotopy::Isotopy;
@@ -37,6 +38,10 @@ pub fn register_hyperbolic(
     observer: &mut dyn Observer,
 ) -> Result<CurveRegistration, Error> {
     let mut history = History::start();
+    if options.fill_holes {
+        let surfaces = [source_surface, target_surface];
+        return filling::registered(surfaces, curves, options, observer, register_hyperbolic);
+    }
     // 1. Refuse what cannot be registered before any work
     let (source, target) = meshes(source_surface, target_surface)?;
     options.check()?;

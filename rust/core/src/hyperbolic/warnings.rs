@@ -158,7 +158,7 @@ fn face_apart(meshes: [&TriangleMesh; 2]) -> bool {
 }
 
 /// The faces whose share of area changes more than tenfold, if they are too much of the surface.
-fn distorted(mesh: &TriangleMesh, figures: &Distortion) -> Option<Warning> {
+pub(super) fn distorted(mesh: &TriangleMesh, figures: &Distortion) -> Option<Warning> {
     let areas = mesh.face_areas();
     let is_distorted = |face: &usize| figures.log2_area_ratio[*face].abs() > TENFOLD.log2();
     let faces = || (0..areas.len()).filter(is_distorted);

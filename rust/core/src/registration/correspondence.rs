@@ -97,7 +97,7 @@ impl Correspondence {
 
     /// The map of the given surfaces, as this is the map of the same with their holes filled. A place on a filling keeps
     /// its position; its location is the nearest on the target.
-    pub(super) fn of_given(&self, [source, target]: [&Surface; 2]) -> Self {
+    pub(crate) fn of_given(&self, [source, target]: [&Surface; 2]) -> Self {
         let [source, target] = [self.source.of_given(source), self.target.of_given(target)];
         let locator = Locator::new(&target.in_domain, &target.faces);
         let (n, m) = (source.in_domain.len(), target.faces.len());
@@ -116,7 +116,7 @@ impl Correspondence {
     }
 
     /// The source and the target.
-    pub(super) fn sides(&self) -> [&Registered; 2] {
+    pub(crate) fn sides(&self) -> [&Registered; 2] {
         [&self.source, &self.target]
     }
 

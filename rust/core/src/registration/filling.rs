@@ -91,32 +91,22 @@ impl Filling {
         whole.of_given(given)
     }
 
-    /// A surface with its holes filled; the given vertices and faces come first.
+    /// A surface with its holes filled.
     fn filled(self, surface: &Surface) -> Result<Filled, Error> {
         let mesh = surface.mesh()?;
         let loops = match self {
             Self::Disks => mesh.boundary_loops().get(1..).unwrap_or_default(),
             Self::Spheres => mesh.boundary_loops(),
         };
-        if loops.is_empty() {
-            return Ok(Filled { surface: surface.clone(), holes: Vec::new() });
-        }
-        let (mut points, mut faces) = (vectors(surface.vertices()), mesh.faces().to_vec());
-        let mut holes = Vec::new();
-        for hole in loops {
-            let before = points.len();
-            fill(hole, &mut points, &mut faces);
-            holes.push(Hole { rim: hole.clone(), n_vertices: points.len() - before });
-        }
-        Ok(Filled { surface: Surface::of_checked_rows(coordinates(points), faces), holes })
+        Ok(Filled::of(surface, mesh, loops))
     }
 }
 
 /// Passes on what a run on filled surfaces reports, previews without the vertices inside the holes.
-struct PreviewOfGiven<'a> {
-    whole: &'a mut dyn Observer,
+pub(crate) struct PreviewOfGiven<'a> {
+    pub whole: &'a mut dyn Observer,
     /// The number of the source's vertices as given, which come first.
-    n_vertices: usize,
+    pub n_vertices: usize,
 }
 
 impl Observer for PreviewOfGiven<'_> {
@@ -130,21 +120,40 @@ impl Observer for PreviewOfGiven<'_> {
     }
 }
 
-/// A surface with its holes filled.
-struct Filled {
-    surface: Surface,
-    holes: Vec<Hole>,
+/// A surface with its holes filled; the given vertices and faces come first.
+pub(crate) struct Filled {
+    pub surface: Surface,
+    pub holes: Vec<Hole>,
 }
 
 /// A filled hole: its boundary loop and the number of vertices inside.
-struct Hole {
+pub(crate) struct Hole {
     rim: Vec<Vertex>,
     n_vertices: usize,
 }
 
 impl Filled {
+    /// A surface, of this mesh, with the holes within some of its boundary loops filled.
+    pub(crate) fn of<'a>(
+        surface: &Surface,
+        mesh: &TriangleMesh,
+        loops: impl IntoIterator<Item = &'a Vec<Vertex>>,
+    ) -> Self {
+        let (mut points, mut faces) = (vectors(surface.vertices()), mesh.faces().to_vec());
+        let mut holes = Vec::new();
+        for hole in loops {
+            let before = points.len();
+            fill(hole, &mut points, &mut faces);
+            holes.push(Hole { rim: hole.clone(), n_vertices: points.len() - before });
+        }
+        if holes.is_empty() {
+            return Self { surface: surface.clone(), holes };
+        }
+        Self { surface: Surface::of_checked_rows(coordinates(points), faces), holes }
+    }
+
     /// Signals of the given vertices, (n, k), for the filled surface: each hole has the mean of its rim.
-    fn extended(&self, signals: ArrayView2<'_, f64>) -> Array2<f64> {
+    pub(crate) fn extended(&self, signals: ArrayView2<'_, f64>) -> Array2<f64> {
         let mut extended = signals.to_owned();
         for hole in &self.holes {
             if hole.rim.iter().any(|vertex| vertex.index() >= signals.nrows()) {
@@ -269,7 +278,7 @@ impl OfGiven for SphereMap {
 }
 
 /// The rows of the given vertices in the disk, (n, 2), or on the sphere, (n, 3), and their figures.
-fn part(
+pub(crate) fn part(
     image: &Array2<f64>,
     given: &TriangleMesh,
     faces: &[[Vertex; 3]],

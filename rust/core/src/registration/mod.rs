@@ -18,7 +18,7 @@ mod disk;
 mod feature_start;
 mod features;
 mod figures;
-mod filling;
+pub(crate) mod filling;
 mod flow;
 mod follow;
 mod given_faces;

@@ -27,7 +27,7 @@ use crate::surface::Given;
 /// source : Surface, or (vertices, faces)
 ///     (n, 3) real and (m, 3) int array: one component without handles, closed or with boundary loops.
 /// target : Surface, or (vertices, faces)
-///     (n_t, 3) real and (m_t, 3) int array: a surface with as many boundary loops.
+///     (n_t, 3) real and (m_t, 3) int array: a surface with as many boundary loops, unless `fill_holes`.
 /// source_curves : list of (k,) int arrays
 ///     Disjoint paths of vertices along edges of the source, each of at least two edges. Open curves are matched from
 ///     start to end by shares of their length. Curves are closed if the first vertex is repeated at the end, or if an
@@ -49,6 +49,10 @@ use crate::surface::Given;
 ///     How strongly the features pull, ≥ 0, all alike or each its own. Default 1.
 /// position_weight : float
 ///     How strongly every vertex is pulled to its own position, ≥ 0, as in `register_spheres`; only with "surface".
+/// fill_holes : bool
+///     Fill all boundary loops, but those along which a curve and its partner run, for the time of the call: for
+///     surfaces with different numbers of holes. Curves may meet the holes that are filled. The result is that of the
+///     given vertices, with `in_holes` as of `register_spheres`; the certificates are those of the filled surfaces.
 /// metric : "newton" or "ricci_flow"
 ///     The method for the hyperbolic metrics: Newton's, or the paper's Ricci flow (slow, then finished by Newton's).
 /// solver : "newton" or "heat"
@@ -99,9 +103,9 @@ use crate::surface::Given;
 /// (0, True)
 #[pyfunction]
 #[pyo3(signature = (source, target, *, source_curves, target_curves, energy="surface", area_weight=1.0,
-                    angle_weight=1.0, features=None, feature_weight=None, position_weight=0.0, metric="newton",
-                    solver="newton", max_iterations=None, tolerance=None, source_sphere=None, target_sphere=None,
-                    progress=None, preview=None))]
+                    angle_weight=1.0, features=None, feature_weight=None, position_weight=0.0,
+                    fill_holes=false, metric="newton", solver="newton", max_iterations=None, tolerance=None,
+                    source_sphere=None, target_sphere=None, progress=None, preview=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn register_hyperbolic(
     py: Python<'_>,
@@ -115,6 +119,7 @@ pub fn register_hyperbolic(
     features: Option<&Bound<'_, PyAny>>,
     feature_weight: Option<&Bound<'_, PyAny>>,
     position_weight: f64,
+    fill_holes: bool,
     metric: &str,
     solver: &str,
     max_iterations: Option<i64>,
@@ -129,6 +134,7 @@ pub fn register_hyperbolic(
         area_weight,
         angle_weight,
         position_weight,
+        fill_holes,
         metric: choice("metric", metric, &metrics())?,
         solver: choice("solver", solver, &SOLVERS)?,
         ..Default::default()

@@ -86,6 +86,17 @@ impl LandmarkCurves<'_> {
         checked(&ours, &theirs)
     }
 
+    /// Refuses vertices that are out of range on the source or the target.
+    pub(crate) fn check_range(&self, n_vertices: [usize; 2]) -> Result<(), Error> {
+        let sides = [(Side::Source, self.source), (Side::Target, self.target)];
+        for ((side, curves), n_vertices) in sides.into_iter().zip(n_vertices) {
+            for (curve, given) in curves.iter().enumerate() {
+                refuse_out_of_range(Some(side), curve, given, n_vertices)?;
+            }
+        }
+        Ok(())
+    }
+
     fn check_counts(&self, source: &TriangleMesh, target: &TriangleMesh) -> Result<(), Error> {
         let [source_count, target_count] = [self.source.len(), self.target.len()];
         let unpaired = source_count.min(target_count)..source_count.max(target_count);
@@ -152,10 +163,7 @@ impl SurfaceCurves<'_> {
         if edges < if repeats_first { 3 } else { 2 } {
             return Err(CurveError::Short { side, curve, edges }.into());
         }
-        let n_vertices = self.mesh.n_vertices();
-        if let Some(place) = given.iter().position(|&vertex| vertex >= n_vertices) {
-            return Err(CurveError::OutOfRange { side, curve, place, value: given[place], n_vertices }.into());
-        }
+        refuse_out_of_range(side, curve, given, self.mesh.n_vertices())?;
         let vertices: Vec<Vertex> =
             given[..given.len() - usize::from(repeats_first)].iter().copied().map(Vertex::new).collect();
         self.refuse_repetitions(curve, &vertices)?;
@@ -212,6 +220,20 @@ impl SurfaceCurves<'_> {
     }
 }
 
+fn refuse_out_of_range(
+    side: Option<Side>,
+    curve: usize,
+    given: &[usize],
+    n_vertices: usize,
+) -> Result<(), Error> {
+    match given.iter().position(|&vertex| vertex >= n_vertices) {
+        None => Ok(()),
+        Some(place) => {
+            Err(CurveError::OutOfRange { side, curve, place, value: given[place], n_vertices }.into())
+        }
+    }
+}
+
 /// Makes a pair of two paths; it is closed if both can be.
 fn paired(curve: usize, (source, target): (Path, Path)) -> Result<CurvePair, Error> {
     let closed = source.can_close && target.can_close;
@@ -247,7 +269,7 @@ fn check_loops(source: &TriangleMesh, target: &TriangleMesh, pairs: &[CurvePair]
 }
 
 /// The boundary loop along which a closed curve runs as a whole, from any vertex and in any direction.
-pub(super) fn loop_along(mesh: &TriangleMesh, curve: &[Vertex]) -> Option<usize> {
+pub(in crate::hyperbolic) fn loop_along(mesh: &TriangleMesh, curve: &[Vertex]) -> Option<usize> {
     mesh.boundary_loops().iter().position(|vertices| {
         let n = vertices.len();
         let Some(first) = vertices.iter().position(|&v| v == curve[0]).filter(|_| n == curve.len()) else {

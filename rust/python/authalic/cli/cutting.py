@@ -1,35 +1,19 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Seams and UVs: unwrap, seams."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import click
 
 from . import options
-from .options import Command, Frame
-
-
-def _search(command: Command) -> Command:
-    """Options of the search for seams."""
-    decorators: tuple[Callable[[Command], Command], ...] = (
-        click.option(
-            "--target", type=float, help="Shear that is wanted; less takes longer seams. [default: 1.4]"
-        ),
-        click.option("--symmetry", type=click.Choice(["auto", "off"]), help="[default: auto]"),
-        click.option("--max-islands", type=click.IntRange(1), help="Limit of the number of islands."),
-        click.option("--overlap", is_flag=True, default=None, help="Islands may overlap themselves."),
-    )
-    for decorator in reversed(decorators):
-        command = decorator(command)
-    return command
+from .options import Frame
 
 
 @click.command()
 @click.argument("surface", type=options.existing_or_stream)
 @click.argument("output", type=options.writable)
-@_search
+@options.search
 @click.option("--margin", type=float, help="Between islands, in units of the square. [default: 0.002]")
 @click.option("--no-pack", is_flag=True, help="Leave each island where its map lies.")
 @options.common
@@ -68,7 +52,7 @@ def unwrap(
 @click.command()
 @click.argument("surface", type=options.existing)
 @click.argument("output", type=options.writable_file)
-@_search
+@options.search
 @options.common
 def seams(
     surface: Path,

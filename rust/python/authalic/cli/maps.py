@@ -14,14 +14,7 @@ from .options import Frame
 @click.command()
 @click.argument("surface", type=options.existing_or_stream)
 @click.argument("output", type=options.writable)
-@click.option(
-    "--boundary",
-    type=click.Choice(["sliding", "arc_length", "free", "rectangle"]),
-    help="Where the boundary goes. [default: sliding]",
-)
-@click.option("--aspect", type=float, help="Width over height of the rectangle.")
-@click.option("--fill-holes", is_flag=True, default=None, help="Fill further boundary loops virtually.")
-@click.option("--overlap", is_flag=True, default=None, help="A free outline may cross itself.")
+@options.boundary
 @options.descent
 @options.areal_option
 @options.common
@@ -87,14 +80,15 @@ def sphere(
     OUTPUT has the vertices and faces in the surface's order. By default it lies beside the surface:
     lh.authalic.sphere for lh.white, ball.sphere.obj for ball.obj.
     """
-    from ..runs.sphere import sphere_output, sphere_run
+    from ..runs.names import map_output
+    from ..runs.sphere import sphere_run
 
     frame = Frame(as_json, quiet, threads)
     if radius is not None and not 0 < radius < float("inf"):
         raise click.BadParameter("it must be positive", param_hint="--radius")
     if output is None and surface != options.STREAM:
         output_format = mesh_format(surface, output_format or input_format).name
-        output = sphere_output(surface, output_format)
+        output = map_output(surface, "sphere", output_format)
     output = output or options.STREAM
     options.check_streams(surface, output, input_format, output_format)
     with options.files(surface, output) as (source, target), frame.progress("sphere") as progress:

@@ -49,6 +49,34 @@ def descent(command: Command) -> Command:
     return _all(options, command)
 
 
+def boundary(command: Command) -> Command:
+    """Options of disk maps."""
+    options = (
+        click.option(
+            "--boundary",
+            type=click.Choice(["sliding", "arc_length", "free", "rectangle"]),
+            help="Where the boundary goes. [default: sliding]",
+        ),
+        click.option("--aspect", type=float, help="Width over height of the rectangle."),
+        click.option(
+            "--fill-holes", is_flag=True, default=None, help="Fill further boundary loops virtually."
+        ),
+        click.option("--overlap", is_flag=True, default=None, help="A free outline may cross itself."),
+    )
+    return _all(options, command)
+
+
+def search(command: Command) -> Command:
+    """Options of the search for seams."""
+    options = (
+        click.option("--target", type=float, help="Shear wanted; less takes longer seams. [default: 1.4]"),
+        click.option("--symmetry", type=click.Choice(["auto", "off"]), help="[default: auto]"),
+        click.option("--max-islands", type=click.IntRange(1), help="Limit of the number of islands."),
+        click.option("--overlap", is_flag=True, default=None, help="Islands may overlap themselves."),
+    )
+    return _all(options, command)
+
+
 areal_option = click.option(
     "--areal",
     type=writable_file,

@@ -35,6 +35,13 @@ class ProgressBar:
             self._shown = time.monotonic()
             print(f"{self._title}: {100 * fraction:.0f} % {message}", file=sys.stderr, flush=True)
 
+    def announce(self, address: str) -> None:
+        """Shows where the run can be watched."""
+        if self._bar is not None:
+            self._bar.console.print(f"{self._title}: dashboard {address}")
+        elif not self._quiet:
+            print(f"{self._title}: dashboard {address}", file=sys.stderr, flush=True)
+
     def __enter__(self) -> "ProgressBar":
         if not self._quiet and sys.stderr.isatty():
             from rich.console import Console

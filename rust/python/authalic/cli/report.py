@@ -28,10 +28,7 @@ class Exit(IntEnum):
     TERMINATED = 143
 
 
-class SchedulerError(RuntimeError):
-    """A scheduler cannot be reached, or has no workers."""
-
-
+_BY_KIND = {"invalid_option": Exit.USAGE, "subjects": Exit.USAGE, "scheduler": Exit.SCHEDULER}
 _FIGURES = (
     ("islands", "islands {}"),
     ("area_ratio_std", "area ratio SD {:.4g}"),
@@ -46,14 +43,13 @@ _FOLLOWED = ("areal_distortion", "pulled", "table")
 
 def exit_code(error: BaseException) -> Exit:
     """The code of an exception."""
-    if getattr(error, "kind", None) == "invalid_option":
-        return Exit.USAGE
+    if (kind := getattr(error, "kind", None)) in _BY_KIND:
+        return _BY_KIND[kind]
     kinds: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], Exit], ...] = (
         (MissingExtra, Exit.PACKAGE),
         ((FileError, OSError), Exit.FILE),
         (MeshError, Exit.MESH),
         (SolverError, Exit.SOLVER),
-        (SchedulerError, Exit.SCHEDULER),
     )
     return next((code for kind, code in kinds if isinstance(error, kind)), Exit.FAULT)
 

@@ -15,17 +15,6 @@ from .record import Progress, Record, areal_distortion, given, map_figures, read
 FREESURFER_RADIUS = 100.0
 
 
-def sphere_output(source: Path, format: str | None = None) -> Path:
-    """The default name: `lh.authalic.sphere` for `lh.white`, `ball.sphere.obj` for `ball.obj`."""
-    chosen = mesh_format(source, format)
-    if chosen.name == "freesurfer":
-        hemisphere = source.name.split(".")[0]
-        return source.with_name(f"{hemisphere}.authalic.sphere")
-    suffix = next((end for end in chosen.suffixes if source.name.lower().endswith(end)), chosen.suffixes[0])
-    stem = source.name[: -len(suffix)] if source.name.lower().endswith(suffix) else source.name
-    return source.with_name(f"{stem}.sphere{source.name[len(stem) :] or suffix}")
-
-
 def sphere_run(
     source: Path,
     target: Path,

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""What can be wrong with a batch as a whole."""
+
+
+class SchedulerError(RuntimeError):
+    """A scheduler cannot be reached, or has no workers."""
+
+    kind = "scheduler"
+
+
+class SubjectsError(ValueError):
+    """The subjects of a batch are none, or two of them would write the same file."""
+
+    kind = "subjects"

@@ -8,6 +8,7 @@ import warnings
 import pytest
 
 import authalic
+import authalic.batch
 import authalic.cli
 import authalic.io
 
@@ -23,6 +24,7 @@ OF_CALLABLES = {"EX01"}
 def public_names() -> list[str]:
     """Every documented name, from the root of the package: functions, classes, and what classes have."""
     listed = [*authalic.__all__, "cli.main", *(f"io.{name}" for name in authalic.io.__all__)]
+    listed += [f"batch.{name}" for name in authalic.batch.__all__]
     subjects = {name: documented(name) for name in listed}
     kept = [
         name for name, subject in subjects.items() if inspect.isclass(subject) or inspect.isroutine(subject)

@@ -3,12 +3,28 @@
 
 
 class SchedulerError(RuntimeError):
-    """A scheduler cannot be reached, or has no workers."""
+    """A scheduler cannot be reached, or has no workers.
 
-    kind = "scheduler"
+    Parameters
+    ----------
+    message : str
+        What was found, and what to do.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message)
+        self.kind = "scheduler"
 
 
 class SubjectsError(ValueError):
-    """The subjects of a batch are none, or two of them would write the same file."""
+    """The subjects of a batch are none, or two of them would write the same file.
 
-    kind = "subjects"
+    Parameters
+    ----------
+    message : str
+        What was found, and what to do.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message)
+        self.kind = "subjects"

@@ -143,9 +143,11 @@ def run_batch(
     >>> import pathlib, tempfile, authalic.io
     >>> from authalic.batch import find_subjects, run_batch
     >>> folder = pathlib.Path(tempfile.mkdtemp())
-    >>> corners, faces = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], [[0, 1, 2], [0, 2, 3], [0, 3, 1],
-    [3, 2, 1]] >>> authalic.io.write_mesh(folder / "simplex.obj", authalic.io.MeshData(corners, faces)) >>>
-    run_batch(find_subjects([folder]), folder / "out", workers=1).done  # doctest: +SKIP 1
+    >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    >>> mesh = authalic.io.MeshData(corners, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
+    >>> authalic.io.write_mesh(folder / "simplex.obj", mesh)
+    >>> run_batch(find_subjects([folder]), folder / "out", workers=1).done  # doctest: +SKIP
+    1
     """
     # 1. What is needed, before work starts
     require("distributed", "a batch", "batch")

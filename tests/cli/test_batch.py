@@ -18,7 +18,7 @@ from authalic.io import FileError, MeshData, read_mesh, read_values, write_mesh
 
 from .conftest import names, start
 
-pytest.importorskip("distributed")
+distributed = pytest.importorskip("distributed")
 parquet = pytest.importorskip("pyarrow.parquet")
 
 from authalic.batch import SubjectsError, find_subjects, run_batch  # noqa: E402
@@ -82,7 +82,10 @@ def cluster(folder, *options, count=2):
         wait_for(place.exists, scheduler)
         words = ("dask_worker", "--scheduler-file", str(place), "--nthreads", "1", "--no-dashboard", *options)
         workers = [stack.enter_context(running(words, folder)) for _ in range(count)]
-        yield json.loads(place.read_text())["address"], workers
+        address = json.loads(place.read_text())["address"]
+        with distributed.Client(address, set_as_default=False) as client:
+            client.wait_for_workers(count, timeout=60)
+        yield address, workers
 
 
 def test_every_subject_gets_the_librarys_map_and_one_row(run, folder):

@@ -7,13 +7,22 @@ from typing import Any
 import bpy
 
 from .. import messages
-from . import shape_keys
+from . import editability, shape_keys
 from .types import MeshObject
 
 _OF_POINT = (
     *("co", "interpolation", "easing", "back", "amplitude", "period", "type"),
     *("handle_left_type", "handle_right_type", "handle_left", "handle_right"),
 )
+
+
+def why_not(obj: MeshObject) -> str | None:
+    """Why the shape keys of an object cannot be key-framed, or None."""
+    keys = obj.data.shape_keys
+    action = keys.animation_data.action if keys and keys.animation_data else None
+    if action is None or editability.is_writable(action):
+        return None
+    return f'the action "{action.name}" of its shape keys is linked from another file; make it local first'
 
 
 def rise(obj: MeshObject, name: str, first: int, last: int) -> None:
@@ -40,6 +49,8 @@ def copy(origin: MeshObject, obj: MeshObject, names: Collection[str]) -> tuple[s
         return "", []
     wanted = [curve for curve in _all(given) if shape_keys.in_path(curve.data_path) in names]
     copied, problems = [], []
+    if wanted and (reason := why_not(obj)):
+        return "", [f"key frames: {reason}"]
     for curve in wanted:
         name = str(shape_keys.in_path(curve.data_path))
         problem = _copied(curve, keys)

@@ -58,6 +58,8 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[Registered,
     couple.check_feature(settings.registration)
     key = key_name(couple.target)
     reason = shape_keys.why_not(couple.source.data, key)
+    if reason is None and settings.frames is not None:
+        reason = animation.why_not(couple.source)
     if reason is not None:
         raise CannotRegister(f"{couple.source.name}: {reason}")
 

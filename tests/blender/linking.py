@@ -32,6 +32,20 @@ def overridden(obj: MeshObject, *, is_mesh_too: bool) -> MeshObject:
     return override
 
 
+def linked_action(path: Path, obj: MeshObject) -> Any:
+    """Saves the action of an object's shape keys, and has the linked one in its place move them."""
+    data: Any = obj.data.shape_keys.animation_data
+    name, file = data.action.name, str(path / "actions.blend")
+    bpy.data.libraries.write(file, {data.action})
+    bpy.data.actions.remove(data.action)
+    with bpy.data.libraries.load(file, link=True) as (_, target):
+        target.actions = [name]
+    data.action = target.actions[0]
+    if hasattr(data, "action_slot"):
+        data.action_slot = data.action_suitable_slots[0]
+    return data.action
+
+
 def local(obj: MeshObject) -> MeshObject:
     """A new object of this file with the mesh of another."""
     copy = bpy.data.objects.new(f"Local {obj.name}", obj.data)

@@ -5,10 +5,12 @@ import re
 import time
 import types
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import bmesh
 import bpy
+import linking
 import meshes
 import numpy as np
 import pairs
@@ -274,6 +276,17 @@ def test_animation_of_other_keys_stays() -> None:
         'key_blocks["Other"].value',
         f'key_blocks["{KEY}"].value',
     ]
+
+
+def test_an_action_that_is_linked_is_refused_before_anything_is_written(tmp_path: Path) -> None:
+    source, _ = balls()
+    source.shape_key_add(name="Basis")
+    source.shape_key_add(name="Other").keyframe_insert("value", frame=5)
+    action = linking.linked_action(tmp_path, source)
+    with pytest.raises(RuntimeError, match=f'the action "{action.name}" of its shape keys is linked'):
+        register(animate=True)
+    assert source.data.shape_keys.key_blocks.keys() == ["Basis", "Other"]
+    assert register() == {"FINISHED"}
 
 
 def test_frames_in_the_wrong_order() -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import bases
 import bpy
+import linking
 import meshes
 import numpy as np
 import pairs
@@ -483,6 +484,19 @@ def test_key_frames_that_cannot_be_copied_are_named(capfd: pytest.CaptureFixture
     assert "key frames of shape key Frown: they are baked" in said and "NLA strips of" in said
     copied = part("blender.animation")._all(source.data.shape_keys)
     assert [each.data_path for each in copied] == ['key_blocks["Smile"].value']
+
+
+def test_key_frames_do_not_go_into_a_linked_action(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    source, target = copies()
+    add_key(source, "Own", np.ones(3)).keyframe_insert("value", frame=3)
+    action = linking.linked_action(tmp_path, source)
+    add_key(target, "Smile", np.ones(3)).keyframe_insert("value", frame=1)
+    only("shape_keys")
+    said = capfd.readouterr().out
+    assert f'left out: key frames: the action "{action.name}" of its shape keys is linked' in said
+    assert "Smile" in source.data.shape_keys.key_blocks
+    paths = [each.data_path for each in part("blender.animation")._all(source.data.shape_keys)]
+    assert paths == ['key_blocks["Own"].value']
 
 
 def test_keys_that_share_their_key_frames_keep_them() -> None:

@@ -21,8 +21,14 @@ from .conftest import names, start
 distributed = pytest.importorskip("distributed")
 parquet = pytest.importorskip("pyarrow.parquet")
 
-from authalic.batch import SubjectsError, find_subjects, run_batch  # noqa: E402
+from authalic.batch import (  # noqa: E402
+    SubjectsError,
+    find_subjects,
+    run_batch,
+    schedule,
+)
 from authalic.batch import memory as memory_of_subjects  # noqa: E402
+from authalic.batch.task import Task  # noqa: E402
 
 ONLY_POSIX = pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
 
@@ -295,8 +301,6 @@ def test_a_scheduler_that_is_not_there_is_an_error_of_its_own(run, folder, monke
 
 @ONLY_POSIX
 def test_a_scheduler_without_workers_is_an_error_of_its_own(run, folder, monkeypatch):
-    from authalic.batch import schedule
-
     monkeypatch.setattr(schedule, "PATIENCE", 0.5)
     with cluster(folder, count=0) as (address, _):
         result = run("batch", "sphere", "ball.obj", "--out", "out", "--scheduler", address)
@@ -344,3 +348,58 @@ def test_two_subjects_for_one_file_are_refused_before_work_starts(folder):
     with pytest.raises(SubjectsError, match=r"lh.pial and lh.white would both be written to"):
         run_batch(find_subjects([folder / "lh.white", folder / "lh.pial"]), folder / "out")
     assert not (folder / "out").exists()
+
+
+class LosingClient:
+    """A client whose workers are lost with the first task that each of them gets."""
+
+    status = "running"
+
+    def __init__(self, workers, writes_record):
+        self.workers, self.writes_record = workers, writes_record
+        self.sent = []
+
+    def scheduler_info(self, n_workers):
+        there = self.workers[len(self.sent) :]
+        return {"workers": {address: {"memory_limit": 0} for address in there[:1]}}
+
+    def submit(self, function, task, *, key, workers, pure):
+        self.sent.append((task.subject, task.attempt, *workers))
+        if self.writes_record:
+            function(task)
+        return Unanswered()
+
+    def cancel(self, futures, force):
+        pass
+
+
+class Unanswered:
+    """A future that never ends."""
+
+    def add_done_callback(self, function):
+        pass
+
+    def done(self):
+        return False
+
+
+def lost_task(folder):
+    return Task(
+        "ball", str(folder / "ball.obj"), str(folder / "ball.out.obj"), str(folder), "sphere", threads=0
+    )
+
+
+def test_a_task_moves_to_another_worker_until_it_was_tried_often_enough(folder, monkeypatch):
+    monkeypatch.setattr(schedule, "LOOK", 0.01)
+    client, records = LosingClient(["a", "b", "c", "d"], writes_record=False), []
+    schedule.Schedule(client, [lost_task(folder)], 2, records.append).run()
+    assert client.sent == [("ball", 1, "a"), ("ball", 2, "b"), ("ball", 3, "c")]
+    assert [record["error"]["kind"] for record in records] == ["worker_lost"]
+    assert "3 workers were lost" in records[0]["error"]["message"]
+
+
+def test_a_record_that_was_written_before_its_worker_was_lost_is_collected(folder, monkeypatch):
+    monkeypatch.setattr(schedule, "LOOK", 0.01)
+    client, records = LosingClient(["a", "b"], writes_record=True), []
+    schedule.Schedule(client, [lost_task(folder)], 2, records.append).run()
+    assert client.sent == [("ball", 1, "a")] and [record["outcome"] for record in records] == ["done"]

@@ -17,7 +17,7 @@ from .cluster import connected, native_threads
 from .errors import SubjectsError
 from .memory import PROCESS, estimate
 from .schedule import Schedule
-from .store import MAPS, is_done, read_records, write_table
+from .store import MAPS, is_done, read_records, remove_record, write_table
 from .subjects import Subject
 from .task import RUNS, Task
 
@@ -161,6 +161,9 @@ def run_batch(
     missing = [task for task in tasks if again or not _is_done(task, records)]
     summary = Summary(len(tasks), before=len(tasks) - len(missing))
     # 3. What is missing
+    for task in missing:
+        remove_record(folder, task.subject)
+        records.pop(task.subject, None)
     try:
         if missing:
             tracked = _Tracked(summary, records, progress)

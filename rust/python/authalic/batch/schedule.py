@@ -19,11 +19,11 @@ from .task import Task, failure, run_task
 
 PATIENCE = 120.0
 """Seconds to wait for a worker when there is none."""
-_LOOK = 1.0
+LOOK = 1.0
 """Seconds between looks at the workers."""
-_LOOK_PER_WORKER = 0.005
+LOOK_PER_WORKER = 0.005
 """Seconds more for each worker, so that looking at thousands of them stays cheap."""
-_GATHER = 10.0
+_GATHER = 5.0
 """Seconds to wait for a record from a worker."""
 
 
@@ -62,14 +62,14 @@ class Schedule:
                 self._look()
                 self._submit()
                 with contextlib.suppress(queue.Empty):
-                    self._collect(self._ended.get(timeout=_LOOK if self._running else _LOOK / 10))
+                    self._collect(self._ended.get(timeout=LOOK if self._running else LOOK / 10))
         finally:
             if self._running:
                 self._client.cancel(list(self._running), force=True)
 
     def _look(self) -> None:
         """Looks now and then who is there: takes tasks back from workers that are gone."""
-        interval = _LOOK + _LOOK_PER_WORKER * len(self._memory)
+        interval = LOOK + LOOK_PER_WORKER * len(self._memory)
         if self._memory and time.monotonic() - self._looked < interval:
             return
         if self._client.status != "running":
@@ -108,30 +108,26 @@ class Schedule:
         if future not in self._running:
             return  # it was taken back
         task, _ = self._running[future]
-        if future.status == "finished":
-            record = self._record(future, task)
-            if record is not None:
-                del self._running[future]
-                self._collected(record)
-                return
-        error = future.exception(timeout=_LOOK) if future.status == "error" else None
-        if error is None or isinstance(error, _distributed().KilledWorker):
+        distributed = _distributed()
+        try:
+            record = future.result(timeout=_GATHER)
+        except (distributed.TimeoutError, distributed.CancelledError, distributed.KilledWorker):
             self._take_back(future, task)
-        else:
+        except Exception as error:  # what the task raised
             del self._running[future]
             self._again_or_fail(task, error)
-
-    def _record(self, future: Any, task: Task) -> Record | None:
-        """The record of a task that was done, from its worker or, if that is gone by now, from its file."""
-        try:
-            return dict(future.result(timeout=_GATHER))
-        except (OSError, _distributed().TimeoutError, _distributed().CancelledError):
-            return read_record(Path(task.folder), task.subject)
+        else:
+            del self._running[future]
+            self._collected(record)
 
     def _take_back(self, future: Any, task: Task) -> None:
-        """The worker of a task was killed, or lost."""
+        """The worker of a task was killed, or lost; perhaps after it had written the record."""
         del self._running[future]
         self._client.cancel([future], force=True)
+        record = read_record(Path(task.folder), task.subject)
+        if record is not None:
+            self._collected(record)
+            return
         message = f"{task.attempt} workers were lost while they ran it: were they killed, for lack of memory?"
         self._again_or_fail(task, RuntimeError(message), "worker_lost")
 

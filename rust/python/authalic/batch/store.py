@@ -53,6 +53,10 @@ def read_records(folder: Path) -> dict[str, Record]:
     return records
 
 
+def remove_record(folder: Path, subject: str) -> None:
+    record_path(folder, subject).unlink(missing_ok=True)
+
+
 def read_record(folder: Path, subject: str) -> Record | None:
     return _read(record_path(folder, subject))
 

@@ -15,12 +15,12 @@ ADDON = ROOT / "addon"
 
 # The rooms of the crate, lowest first: a room may use those of lower rows only, and itself.
 CORE_ROOMS = (
-    {"vector", "error", "control", "parallel"},
+    {"vector", "error", "control", "parallel", "sets"},
     {"arrays"},
     {"mesh", "options"},
     {"sparse", "distortion", "codomain", "location", "packing"},
-    {"energy", "embedding", "alignment"},
-    {"optimize"},
+    {"energy", "embedding", "alignment", "filling"},
+    {"optimize", "repair"},
     {"disk", "sphere", "untangle"},
     {"layout", "seams"},
     {"unwrap"},

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Arrays of any dtype and memory layout are accepted; objects that are no arrays of numbers are refused."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -288,3 +290,112 @@ def test_seams_that_are_no_k_by_2_integers_are_refused(seams):
 def test_empty_seams_of_any_shape_cut_nothing():
     for seams in ([], np.zeros((0, 2)), np.zeros((0, 2), int)):
         assert len(authalic.cut(VERTICES, FACES, seams=seams)) == 1
+
+
+def test_arrays_as_freesurfer_files_have_them(expected_sphere):
+    vertices, faces = BALL.astype(">f4"), BALL_FACES.astype(">i4")
+    assert np.array_equal(authalic.sphere_map(vertices, faces).positions, expected_sphere)
+
+
+def test_masked_values_are_refused_and_not_unmasked(expected):
+    masked = np.ma.masked_equal(VERTICES, VERTICES[5, 0])
+    faces = np.ma.masked_equal(FACES, 7)
+    density = np.ma.masked_less(np.arange(1.0, len(FACES) + 1), 3)
+    for call, name in (
+        (lambda: authalic.disk_map(masked, FACES), "vertices"),
+        (lambda: authalic.disk_map(VERTICES, faces), "faces"),
+        (lambda: authalic.disk_map(VERTICES, FACES, density=density), "density"),
+        (lambda: authalic.repair(masked, FACES), "vertices"),
+    ):
+        with pytest.raises(authalic.MeshError, match=f"^{name} must be without masked values") as caught:
+            call()
+        assert caught.value.kind == "invalid_array"
+    nothing = np.ma.masked_array(VERTICES, mask=False)
+    assert np.array_equal(authalic.disk_map(nothing, FACES).uv, expected)
+
+
+def test_points_of_the_plane_are_taken_where_that_is_asked_for():
+    flat = meshes.grid(7, 9)
+    hint = r"shape \(63, 2\); .* Surface\(vertices, faces, flat=True\)"
+    with pytest.raises(authalic.MeshError, match=hint):
+        authalic.disk_map(flat.vertices[:, :2], flat.faces)
+    surface = authalic.Surface(flat.vertices[:, :2], flat.faces, flat=True)
+    assert np.array_equal(surface.vertices, flat.vertices)
+    assert np.array_equal(authalic.disk_map(surface).uv, authalic.disk_map(*flat).uv)
+    words = r"vertices must be of shape \(n, 2\), but is of shape \(63, 3\)"
+    with pytest.raises(authalic.MeshError, match=words):
+        authalic.Surface(*flat, flat=True)
+
+
+def vtk(faces):
+    """Triangles as VTK has them: the number of corners before the corners."""
+    return np.hstack([np.full((len(faces), 1), 3), faces])
+
+
+@pytest.mark.parametrize("given", [vtk(FACES), vtk(FACES).ravel()], ids=["rows", "flat"])
+def test_faces_in_the_layout_of_vtk_are_refused_with_a_hint(given, expected):
+    with pytest.raises(authalic.MeshError, match="faces must be") as caught:
+        authalic.disk_map(VERTICES, given)
+    hint = "take np.reshape(faces, (-1, 4))[:, 1:]"
+    assert hint in str(caught.value)
+    assert np.array_equal(authalic.disk_map(VERTICES, np.reshape(given, (-1, 4))[:, 1:]).uv, expected)
+
+
+def test_quads_are_refused_with_a_hint():
+    with pytest.raises(authalic.MeshError, match="quads: split each into two triangles"):
+        authalic.disk_map(VERTICES, [[0, 1, 10, 9], [1, 2, 11, 10]])
+
+
+class Container:
+    """As Open3D's vectors: no array, but numpy makes one of it."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def __array__(self, dtype=None, copy=None):
+        return self.array
+
+
+OBJECTS = {
+    "trimesh": SimpleNamespace(vertices=VERTICES, faces=FACES),
+    "open3d": SimpleNamespace(vertices=Container(VERTICES), triangles=Container(FACES.astype("i4"))),
+    "pyvista": SimpleNamespace(points=VERTICES, faces=vtk(FACES).ravel()),
+    "pyvista_rows": SimpleNamespace(points=VERTICES, faces=vtk(FACES)),
+    "vtk_grid": SimpleNamespace(points=VERTICES, cells_dict={5: FACES, 3: [[0, 1]]}),
+    "meshio": SimpleNamespace(points=VERTICES, cells_dict={"line": np.array([[0, 1]]), "triangle": FACES}),
+}
+
+
+@pytest.mark.parametrize("mesh", OBJECTS.values(), ids=OBJECTS)
+def test_meshes_of_other_libraries_are_taken_by_their_attributes(mesh, expected):
+    assert np.array_equal(authalic.disk_map(mesh).uv, expected)
+    assert np.array_equal(authalic.Surface(mesh).faces, FACES)
+    assert not authalic.repair(mesh).is_changed
+    figures = authalic.distortion(mesh, expected)
+    assert figures.authalic_energy == authalic.distortion(VERTICES, FACES, expected).authalic_energy
+    [pairwise] = authalic.disk_maps([mesh])
+    assert np.array_equal(pairwise.uv, expected)
+    with pytest.raises(TypeError, match="faces go with vertices"):
+        authalic.disk_map(mesh, FACES)
+
+
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        SimpleNamespace(points=VERTICES, cells_dict={"quad": FACES[:, [0, 1, 2, 2]], "triangle": FACES}),
+        SimpleNamespace(points=VERTICES, cells_dict={9: FACES[:, [0, 1, 2, 2]]}),
+        SimpleNamespace(points=VERTICES, cells_dict={"line": [[0, 1]]}),
+        SimpleNamespace(points=VERTICES, faces=[4, 0, 1, 10, 9]),
+        SimpleNamespace(points=VERTICES, faces=[4, 0, 1, 10, 9, 3, 1, 2]),
+    ],
+    ids=["mixed", "quads", "lines", "vtk_quads", "vtk_mixed"],
+)
+def test_meshes_of_other_polygons_are_refused(mesh):
+    with pytest.raises(authalic.MeshError, match=r"^the mesh must be of triangles"):
+        authalic.disk_map(mesh)
+
+
+def test_objects_that_are_no_meshes_are_told_that_faces_are_missing():
+    for given in (VERTICES, SimpleNamespace(vertices=VERTICES), SimpleNamespace(points=VERTICES)):
+        with pytest.raises(authalic.MeshError, match="faces must be integers of shape"):
+            authalic.disk_map(given)

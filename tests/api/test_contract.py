@@ -27,6 +27,7 @@ NAMES = {
     "Refinement",
     "Registration",
     "RegistrationWarning",
+    "Repaired",
     "Seams",
     "SolverError",
     "SphereMap",
@@ -46,6 +47,7 @@ NAMES = {
     "register_disks",
     "register_hyperbolic",
     "register_spheres",
+    "repair",
     "seams",
     "set_threads",
     "sphere_map",
@@ -92,6 +94,7 @@ KEYWORDS = {
         "overlap": False,
         "corners": None,
         "aspect": None,
+        "repair": False,
         "progress": None,
     },
     "sphere_map": {
@@ -105,7 +108,16 @@ KEYWORDS = {
         "tolerance": None,
         "refine": False,
         "unfold": True,
+        "fill_holes": False,
+        "repair": False,
         "progress": None,
+    },
+    "repair": {
+        "merge": 0.0,
+        "close_holes": "pinholes",
+        "keep_outline": False,
+        "close_handles": False,
+        "keep": "all",
     },
     "stretch_hessian": {"density": None},
     "untangle": {"fixed": None, "tolerance": 0.01, "progress": None},
@@ -163,6 +175,7 @@ POSITIONAL = {
     "unwrap": ["surface"],
     "pack": ["uv", "faces", "island_of"],
     "cut": ["vertices", "faces"],
+    "repair": ["vertices", "faces"],
     "register_disks": ["source", "target"],
     "register_spheres": ["source", "target"],
     "register_hyperbolic": ["source", "target"],
@@ -290,7 +303,7 @@ def test_a_map_has_the_attributes_of_the_contract(any_result):
         type(any_result)
     ]
     assert public_attributes(any_result) == {
-        *(*special, "faces", "status", "iterations", "history", "distortion", "seconds")
+        *(*special, "faces", "status", "iterations", "history", "distortion", "repaired", "seconds")
     }
     assert isinstance(any_result.distortion, authalic.Distortion)
     assert any_result.status in {"converged", "max_iterations", "stalled", "cancelled"}

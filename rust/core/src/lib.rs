@@ -125,6 +125,7 @@ mod distortion;
 mod embedding;
 mod energy;
 mod error;
+mod filling;
 mod hyperbolic;
 mod layout;
 mod location;
@@ -134,7 +135,9 @@ mod options;
 mod packing;
 mod parallel;
 mod registration;
+mod repair;
 mod seams;
+mod sets;
 mod sparse;
 mod sphere;
 #[doc(hidden)]
@@ -164,6 +167,7 @@ pub use registration::{
     Correspondence, DiskRegistration, Energy, Features, Landmarks, Registration, RegistrationOptions,
     SphereRegistration, Strain, follow, homotopy, register_disks, register_spheres,
 };
+pub use repair::{CloseHandles, CloseHoles, Keep, RepairCounts, RepairOptions, Repaired, repair};
 pub use seams::{SeamMethod, SeamOptions, Seams, Symmetry, seams};
 pub use sphere::{Refinement, SphereMap, SphereMapOptions, SphereMethod, sphere_map};
 pub use untangle::{UntangleOptions, Untangled, untangle};

@@ -2,7 +2,7 @@
 """Types of the native module, whose own docstrings document it."""
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, Literal, Self, TypeAlias, final
+from typing import Any, Literal, Protocol, Self, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +23,7 @@ __all__ = [
     "Patch",
     "Refinement",
     "Registration",
+    "Repaired",
     "Seams",
     "SolverError",
     "SphereMap",
@@ -42,6 +43,7 @@ __all__ = [
     "register_disks",
     "register_hyperbolic",
     "register_spheres",
+    "repair",
     "seams",
     "set_threads",
     "sphere_map",
@@ -54,7 +56,30 @@ _Reals: TypeAlias = NDArray[np.float64]
 _Indices: TypeAlias = NDArray[np.int64]
 _Complex: TypeAlias = NDArray[np.complex128]
 _Progress: TypeAlias = Callable[[float, str], bool | None]
-_Handle: TypeAlias = Surface | Patch
+
+class _FacesMesh(Protocol):
+    """A mesh as trimesh has it, with vertices and faces, also those of VTK in their layout beside points."""
+
+    @property
+    def faces(self) -> Any: ...
+
+class _TrianglesMesh(Protocol):
+    """A mesh as Open3D has it."""
+
+    @property
+    def vertices(self) -> Any: ...
+    @property
+    def triangles(self) -> Any: ...
+
+class _CellsMesh(Protocol):
+    """A mesh as meshio has it."""
+
+    @property
+    def points(self) -> Any: ...
+    @property
+    def cells_dict(self) -> Any: ...
+
+_Handle: TypeAlias = Surface | Patch | Repaired | _FacesMesh | _TrianglesMesh | _CellsMesh
 _Surface: TypeAlias = _Handle | tuple[ArrayLike, ArrayLike]
 _Side: TypeAlias = Literal["source", "target"] | None
 _Status: TypeAlias = Literal["converged", "max_iterations", "stalled", "cancelled"]
@@ -81,7 +106,9 @@ class SolverError(RuntimeError):
 
 @final
 class Surface:
-    def __new__(cls, vertices: ArrayLike, faces: ArrayLike) -> Self: ...
+    def __new__(
+        cls, vertices: ArrayLike | _Handle, faces: ArrayLike | None = None, *, flat: bool = False
+    ) -> Self: ...
     @property
     def vertices(self) -> _Reals: ...
     @property
@@ -130,6 +157,29 @@ class Patch:
     def is_closed(self) -> bool: ...
 
 @final
+class Repaired:
+    @property
+    def surface(self) -> Surface: ...
+    @property
+    def vertices(self) -> _Reals: ...
+    @property
+    def faces(self) -> _Indices: ...
+    @property
+    def vertex_of(self) -> _Indices: ...
+    @property
+    def face_of(self) -> _Indices: ...
+    @property
+    def vertex_to(self) -> _Indices: ...
+    @property
+    def face_to(self) -> _Indices: ...
+    @property
+    def counts(self) -> dict[str, int]: ...
+    @property
+    def report(self) -> str: ...
+    @property
+    def is_changed(self) -> bool: ...
+
+@final
 class Distortion:
     @property
     def authalic_energy(self) -> float: ...
@@ -165,6 +215,8 @@ class DiskMap:
     @property
     def distortion(self) -> Distortion: ...
     @property
+    def repaired(self) -> Repaired | None: ...
+    @property
     def seconds(self) -> float: ...
 
 @final
@@ -198,6 +250,8 @@ class SphereMap:
     def distortion(self) -> Distortion: ...
     @property
     def refinement(self) -> Refinement | None: ...
+    @property
+    def repaired(self) -> Repaired | None: ...
     @property
     def seconds(self) -> float: ...
     def layout(
@@ -454,6 +508,16 @@ class HyperbolicStructure:
     def area(self) -> float: ...
     def cover(self, copies: int) -> tuple[list[tuple[int, ...]], _Complex]: ...
 
+def repair(
+    vertices: ArrayLike | _Handle,
+    faces: ArrayLike | None = None,
+    *,
+    merge: float | None = 0.0,
+    close_holes: bool | int | Literal["pinholes"] = "pinholes",
+    keep_outline: bool = False,
+    close_handles: bool | float | Literal["noise"] = False,
+    keep: Literal["all", "largest"] = "all",
+) -> Repaired: ...
 def cut(
     vertices: ArrayLike | _Handle, faces: ArrayLike | None = None, *, seams: ArrayLike | None = None
 ) -> list[Patch]: ...
@@ -486,6 +550,7 @@ def disk_map(
     overlap: bool = False,
     corners: ArrayLike | None = None,
     aspect: float | None = None,
+    repair: bool = False,
     progress: _Progress | None = None,
 ) -> DiskMap: ...
 def disk_maps(
@@ -516,6 +581,8 @@ def sphere_map(
     tolerance: float | None = None,
     refine: bool = False,
     unfold: bool = True,
+    fill_holes: bool = False,
+    repair: bool = False,
     progress: _Progress | None = None,
 ) -> SphereMap: ...
 def stretch_hessian(

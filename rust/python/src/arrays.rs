@@ -45,9 +45,16 @@ pub fn from_array<T: Element, D: Dimension>(py: Python<'_>, array: Array<T, D>) 
     array.into_pyarray(py).unbind()
 }
 
-/// Any object as an array.
+/// Any object as an array. Masked values are refused, which would come out from behind their mask.
 pub fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyUntypedArray>> {
     let py = object.py();
+    if object.hasattr(intern!(py, "mask"))? {
+        let is_masked = py.import(intern!(py, "numpy.ma"))?.call_method1(intern!(py, "is_masked"), (object,));
+        if is_masked?.is_truthy()? {
+            let expected = "without masked values: leave out the elements that these belong to".into();
+            return Err(bad_array(py, name, "a masked array".into(), expected));
+        }
+    }
     let made = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "asarray"), (object,));
     let failed =
         |error: PyErr| bad_array(py, name, error.value(py).to_string(), "an array of numbers".into());

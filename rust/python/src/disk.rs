@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::disk_map`.
 
-use authalic::{Boundary, DiskMapOptions, DiskMethod, Error, Record};
+use authalic::{Boundary, DiskMapOptions, DiskMethod, Error, Record, RepairOptions};
 use numpy::PyArray2;
 use numpy::ndarray::ArrayView2;
 use pyo3::prelude::*;
@@ -12,6 +12,7 @@ use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, to_python};
 use crate::indices::{from_indices, index_list};
 use crate::options::{history, parse_iterations};
+use crate::repair::{Prepared, Repaired, check_no_start};
 use crate::run::run;
 use crate::surface::{Given, oriented};
 
@@ -33,6 +34,9 @@ pub struct DiskMap {
     /// The figures of the map.
     #[pyo3(get)]
     distortion: Py<Distortion>,
+    /// The repaired surface that was mapped, with `repair`; else None.
+    #[pyo3(get)]
+    repaired: Option<Py<Repaired>>,
     /// Wall time of the call.
     #[pyo3(get)]
     seconds: f64,
@@ -50,6 +54,7 @@ impl DiskMap {
             records: map.history.records().to_vec(),
             history: PyOnceLock::new(),
             distortion: Py::new(py, Distortion::new(py, map.distortion))?,
+            repaired: None,
             seconds: map.seconds,
         })
     }
@@ -89,7 +94,7 @@ impl DiskMap {
 /// Parameters
 /// ----------
 /// vertices : (n, 3) real array
-///     Positions, any unit. Or a Surface, without `faces`.
+///     Positions, any unit. Or a Surface or another mesh object, without `faces`.
 /// faces : (m, 3) int array
 ///     Triangles of an orientable manifold with one boundary loop and no handles.
 /// method : {"gauss_newton", "conjugate_gradient", "fixed_point"}
@@ -137,6 +142,10 @@ impl DiskMap {
 /// aspect : float, optional
 ///     For a rectangle: width over height, from 1e-4 to 1e4. Default: the aspect of least angle distortion,
 ///     found along with the map.
+/// repair : bool
+///     Repair the surface first, as the function `repair` does: its largest piece, without pinholes and handles of
+///     noise, with its longest boundary loop. The map is then that of its `repaired`, while a density and corners are
+///     those of the faces and vertices given. Default False.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between iterations and within long steps; False cancels and returns the best map so far.
 ///
@@ -165,7 +174,7 @@ impl DiskMap {
 #[pyfunction]
 #[pyo3(signature = (vertices, faces=None, *, method="gauss_newton", boundary="sliding", density=None, angle_weight=0.0,
                     area_tolerance=None, initial=None, max_iterations=None, tolerance=None, fill_holes=false,
-                    overlap=false, corners=None, aspect=None, progress=None))]
+                    overlap=false, corners=None, aspect=None, repair=false, progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn disk_map(
     py: Python<'_>,
@@ -183,6 +192,7 @@ pub fn disk_map(
     overlap: bool,
     corners: Option<&Bound<'_, PyAny>>,
     aspect: Option<f64>,
+    repair: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<DiskMap> {
     // 1. Arguments to plain data
@@ -190,12 +200,15 @@ pub fn disk_map(
     let max_iterations = max_iterations.map(parse_iterations).transpose()?;
     let given = Given::new(vertices, faces)?;
     let density = density.map(|density| reals(density, "density")).transpose()?;
+    check_no_start(repair, initial)?;
+    let repair = repair.then(|| RepairOptions::for_a_map(true));
     let initial = initial.map(|initial| real_table::<2>(initial, "initial")).transpose()?;
     let corners = corners.map(|corners| parse_corners(corners, given.n_vertices())).transpose()?;
     // 2. The run
-    let (map, surface) = run(py, progress, move |observer| {
-        let surface = given.surface()?;
-        let density = density.as_ref().map(|density| density.view());
+    let (map, prepared) = run(py, progress, move |observer| {
+        let prepared = Prepared::new(given, density, repair.as_ref())?;
+        let density = prepared.density.as_ref().map(|density| density.view());
+        let corners = corners.map(|corners| prepared.vertices("corners", corners)).transpose()?;
         let initial = initial.as_ref().map(|initial| initial.view());
         let options = DiskMapOptions {
             method,
@@ -211,10 +224,12 @@ pub fn disk_map(
             corners,
             aspect,
         };
-        Ok((authalic::disk_map(&surface, &options, observer)?, surface))
+        Ok((authalic::disk_map(&prepared.surface, &options, observer)?, prepared))
     })?;
     // 3. The result
-    DiskMap::new(py, map, oriented(&surface).view())
+    let Prepared { surface, repaired, .. } = prepared;
+    let repaired = repaired.map(|repaired| Py::new(py, Repaired::new(py, repaired)?)).transpose()?;
+    Ok(DiskMap { repaired, ..DiskMap::new(py, map, oriented(&surface).view())? })
 }
 
 /// Maps many disks in one go, which is much faster than one by one where they are small.

@@ -95,7 +95,15 @@ pub fn to_python(py: Python<'_>, error: &Error) -> PyErr {
 /// The message of an error, with the argument of Python that avoids it.
 fn in_python_words(error: &Error) -> String {
     match error {
-        Error::Mesh(authalic::MeshError::SeveralBoundaries { .. }) => {
+        Error::Mesh(
+            authalic::MeshError::SeveralComponents { coincident: 1.., .. }
+            | authalic::MeshError::OpenSurface { coincident: 1.., .. },
+        ) => {
+            format!("{error} (repair=True merges them)")
+        }
+        Error::Mesh(
+            authalic::MeshError::SeveralBoundaries { .. } | authalic::MeshError::OpenSurface { .. },
+        ) => {
             format!("{error} (fill_holes=True fills them)")
         }
         Error::OfSurface { error: inner, .. } => match **inner {
@@ -111,11 +119,22 @@ fn in_python_words(error: &Error) -> String {
             format!("{error}, or features=, with which any number will do")
         }
         Error::Mesh(
+            authalic::MeshError::NonFinite { .. }
+            | authalic::MeshError::RepeatedVertex { .. }
+            | authalic::MeshError::DuplicateFaces { .. }
+            | authalic::MeshError::ZeroArea { .. }
+            | authalic::MeshError::NonManifoldEdges { .. }
+            | authalic::MeshError::NonManifoldVertices { .. }
+            | authalic::MeshError::UnreferencedVertices { .. },
+        ) => format!("{error} (authalic.repair mends this)"),
+        Error::Mesh(
             authalic::MeshError::ClosedSurface { .. }
             | authalic::MeshError::HasHandles { .. }
             | authalic::MeshError::SphereHasHandles { .. }
             | authalic::MeshError::GenusNotZero { .. },
-        ) => format!("{error} (unwrap with seams=\"auto\" cuts any surface open)"),
+        ) => format!(
+            "{error} (unwrap with seams=\"auto\" cuts any surface open, repair with close_handles=True closes handles)"
+        ),
         error => error.to_string(),
     }
 }

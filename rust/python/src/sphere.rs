@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use authalic::{LineSearch, SphereFaces, SphereMapOptions, SphereMethod};
+use authalic::{LineSearch, RepairOptions, SphereFaces, SphereMapOptions, SphereMethod};
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -14,6 +14,7 @@ use crate::errors::bad_option;
 use crate::indices::{from_index_list, from_indices};
 use crate::layout::{Arguments, Layout, layout};
 use crate::options::{history, parse_iterations};
+use crate::repair::{Prepared, Repaired, check_no_start};
 use crate::run::run;
 use crate::surface::{Given, oriented};
 
@@ -52,6 +53,9 @@ pub struct SphereMap {
     /// The split faces, with `refine`; else None.
     #[pyo3(get)]
     refinement: Option<Py<Refinement>>,
+    /// The repaired surface that was mapped, with `repair`; else None.
+    #[pyo3(get)]
+    repaired: Option<Py<Repaired>>,
     /// Wall time of the call.
     #[pyo3(get)]
     seconds: f64,
@@ -125,6 +129,7 @@ impl SphereMap {
             history: history(py, map.history.records())?,
             distortion: Py::new(py, Distortion::new(py, map.distortion))?,
             refinement: None,
+            repaired: None,
             seconds: map.seconds,
             sphere: Arc::new(sphere),
         })
@@ -234,7 +239,7 @@ impl SphereMap {
 /// Parameters
 /// ----------
 /// vertices : (n, 3) real array
-///     Positions, any unit. Or a Surface, without `faces`.
+///     Positions, any unit. Or a Surface or another mesh object, without `faces`.
 /// faces : (m, 3) int array
 ///     Triangles of a connected orientable manifold without boundary and without handles.
 /// method : {"gauss_newton", "gradient_descent", "fixed_point"}
@@ -273,6 +278,12 @@ impl SphereMap {
 ///     Default False.
 /// unfold : bool
 ///     Unfold the faces that the papers' methods fold. Default True.
+/// fill_holes : bool
+///     Fill all holes for the time of the map instead of refusing a surface with holes, which then stay open on the
+///     sphere, at about the size that they have on the surface. Not with `initial` or `refine`. Default False.
+/// repair : bool
+///     Repair the surface first, as the function `repair` does: its largest piece, without pinholes and handles of
+///     noise. The map is then that of its `repaired`, while a density is that of the faces given. Default False.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between iterations and within long steps; False cancels and returns the best map so far.
 ///
@@ -301,7 +312,7 @@ impl SphereMap {
 #[pyfunction]
 #[pyo3(signature = (vertices, faces=None, *, method="gauss_newton", line_search="interpolation", density=None,
                     angle_weight=0.0, area_tolerance=None, initial=None, max_iterations=None, tolerance=None,
-                    refine=false, unfold=true, progress=None))]
+                    refine=false, unfold=true, fill_holes=false, repair=false, progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn sphere_map(
     py: Python<'_>,
@@ -317,6 +328,8 @@ pub fn sphere_map(
     tolerance: Option<f64>,
     refine: bool,
     unfold: bool,
+    fill_holes: bool,
+    repair: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<SphereMap> {
     // 1. Arguments to plain data
@@ -324,11 +337,14 @@ pub fn sphere_map(
     let max_iterations = max_iterations.map(parse_iterations).transpose()?;
     let given = Given::new(vertices, faces)?;
     let density = density.map(|density| reals(density, "density")).transpose()?;
+    check_no_start(repair, initial)?;
+    let repair = repair.then(|| RepairOptions::for_a_map(false));
     let initial = initial.map(|initial| real_table::<3>(initial, "initial")).transpose()?;
     // 2. The run
-    let (mut map, surface, sphere) = run(py, progress, move |observer| {
-        let surface = given.surface()?;
-        let density = density.as_ref().map(|density| density.view());
+    let (mut map, prepared, sphere) = run(py, progress, move |observer| {
+        let prepared = Prepared::new(given, density, repair.as_ref())?;
+        let surface = &prepared.surface;
+        let density = prepared.density.as_ref().map(|density| density.view());
         let initial = initial.as_ref().map(|initial| initial.view());
         let options = SphereMapOptions {
             method,
@@ -340,16 +356,19 @@ pub fn sphere_map(
             max_iterations,
             tolerance,
             refine,
+            fill_holes,
             unfold,
         };
-        let map = authalic::sphere_map(&surface, &options, observer)?;
+        let map = authalic::sphere_map(surface, &options, observer)?;
         let sphere = map.faces_on_sphere(surface.oriented_faces()?.view())?;
-        Ok((map, surface, sphere))
+        Ok((map, prepared, sphere))
     })?;
     // 3. The result
+    let Prepared { surface, repaired, .. } = prepared;
+    let repaired = repaired.map(|repaired| Py::new(py, Repaired::new(py, repaired)?)).transpose()?;
     let refinement = map.refinement.take().map(|refinement| Refinement::new(py, *refinement, &surface));
     let refinement = refinement.transpose()?.map(|refinement| Py::new(py, refinement)).transpose()?;
-    Ok(SphereMap { refinement, ..SphereMap::new(py, map, oriented(&surface).view(), sphere)? })
+    Ok(SphereMap { refinement, repaired, ..SphereMap::new(py, map, oriented(&surface).view(), sphere)? })
 }
 
 fn parse_method(method: &str) -> PyResult<SphereMethod> {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::Surface`: the handle, its patches, and surfaces as arguments.
 
-use authalic::{Error, Topology, Vertex};
-use numpy::ndarray::{Array2, aview2};
+use authalic::{Error, RepairOptions, Topology, Vertex};
+use numpy::ndarray::{Array2, Axis, aview2, concatenate};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
@@ -11,7 +11,9 @@ use pyo3::sync::PyOnceLock;
 
 use crate::arrays::{from_array, real_table};
 use crate::errors::bad_array;
+use crate::hints::{refuse_plane, refuse_vtk};
 use crate::indices::{from_index_list, from_indices, index_table};
+use crate::mesh_objects::mesh_parts;
 use crate::run::run;
 
 /// A triangle mesh that is checked once, and accepted in the place of vertices and faces.
@@ -23,9 +25,11 @@ use crate::run::run;
 /// Parameters
 /// ----------
 /// vertices : (n, 3) real array
-///     Positions, any unit.
+///     Positions, any unit. Or a mesh object of trimesh, pyvista, meshio or Open3D, without `faces`.
 /// faces : (m, 3) int array
 ///     Triangles as vertex indices.
+/// flat : bool
+///     Take (n, 2) points of a flat surface, which gets z = 0. Default False.
 ///
 /// Raises
 /// ------
@@ -74,8 +78,17 @@ impl Surface {
 #[pymethods]
 impl Surface {
     #[new]
-    fn new(py: Python<'_>, vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let given = Given::arrays(vertices, faces, ["vertices", "faces"])?;
+    #[pyo3(signature = (vertices, faces=None, *, flat=false))]
+    fn new(
+        py: Python<'_>,
+        vertices: &Bound<'_, PyAny>,
+        faces: Option<&Bound<'_, PyAny>>,
+        flat: bool,
+    ) -> PyResult<Self> {
+        let given = match faces {
+            Some(faces) if flat => Given::flat(vertices, faces)?,
+            faces => Given::new(vertices, faces)?,
+        };
         Ok(run(py, None, move |_| given.surface())?.into())
     }
 
@@ -314,16 +327,25 @@ pub enum Given {
 }
 
 impl Given {
-    /// The first arguments of a function: a Surface or Patch, or vertices and faces.
+    /// The first arguments of a function: a surface, or vertices and faces.
     pub fn new(vertices: &Bound<'_, PyAny>, faces: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
-        match (handle(vertices), faces) {
-            (Some(handle), None) => Ok(Self::Handle(handle)),
+        match (Self::whole(vertices)?, faces) {
+            (Some(given), None) => Ok(given),
             (Some(_), Some(_)) => Err(too_many()),
             (None, Some(faces)) => Self::arrays(vertices, faces, ["vertices", "faces"]),
             (None, None) => {
                 Err(missing(vertices.py(), "faces", "integers of shape (m, 3) beside the vertices"))
             }
         }
+    }
+
+    /// A surface in one object: a Surface, Patch or Repaired, or a mesh object of another library.
+    fn whole(object: &Bound<'_, PyAny>) -> PyResult<Option<Self>> {
+        if let Some(handle) = handle(object) {
+            return Ok(Some(Self::Handle(handle)));
+        }
+        let Some((vertices, faces)) = mesh_parts(object)? else { return Ok(None) };
+        Self::arrays(&vertices, &faces, ["vertices", "faces"]).map(Some)
     }
 
     /// The first arguments of a function on a map: a surface and its image, or vertices, faces and image.
@@ -334,22 +356,22 @@ impl Given {
     ) -> PyResult<(Self, &'a Bound<'py, PyAny>)> {
         let py = vertices.py();
         let no_image = || missing(py, "image", "real numbers of shape (n, 2) or (n, 3)");
-        if handle(vertices).is_none() {
+        let Some(given) = Self::whole(vertices)? else {
             let given = Self::new(vertices, faces)?;
             return Ok((given, image.ok_or_else(no_image)?));
-        }
+        };
         // a surface takes the place of two arguments, so its image may be the second
         match (faces, image) {
-            (Some(image), None) | (None, Some(image)) => Ok((Self::new(vertices, None)?, image)),
+            (Some(image), None) | (None, Some(image)) => Ok((given, image)),
             (None, None) => Err(no_image()),
             (Some(_), Some(_)) => Err(too_many()),
         }
     }
 
-    /// One argument of the given name: a Surface or Patch, or a pair (vertices, faces).
+    /// One argument of the given name: a surface, or a pair (vertices, faces).
     pub fn pair(object: &Bound<'_, PyAny>, [name, vertices, faces]: [&'static str; 3]) -> PyResult<Self> {
-        if let Some(handle) = handle(object) {
-            return Ok(Self::Handle(handle));
+        if let Some(given) = Self::whole(object)? {
+            return Ok(given);
         }
         let parts: Vec<Bound<'_, PyAny>> =
             object.try_iter().and_then(|parts| parts.take(3).collect()).unwrap_or_default();
@@ -368,9 +390,20 @@ impl Given {
         faces: &Bound<'_, PyAny>,
         [vertices_name, faces_name]: [&'static str; 2],
     ) -> PyResult<Self> {
+        refuse_plane(vertices, vertices_name)?;
         let vertices = real_table::<3>(vertices, vertices_name)?;
+        refuse_vtk(faces, faces_name)?;
         let faces = index_table::<3>(faces, faces_name, vertices.nrows())?;
         Ok(Self::Arrays(vertices, faces))
+    }
+
+    /// Points (n, 2) in the plane z = 0, and faces.
+    fn flat(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let points = real_table::<2>(vertices, "vertices")?;
+        refuse_vtk(faces, "faces")?;
+        let faces = index_table::<3>(faces, "faces", points.nrows())?;
+        let heights = Array2::zeros((points.nrows(), 1));
+        Ok(Self::Arrays(concatenate![Axis(1), points, heights], faces))
     }
 
     pub fn n_vertices(&self) -> usize {
@@ -385,6 +418,14 @@ impl Given {
         match self {
             Self::Handle(surface) => Ok(surface),
             Self::Arrays(vertices, faces) => authalic::Surface::new(vertices, faces),
+        }
+    }
+
+    /// The repaired surface.
+    pub fn repaired(self, options: &RepairOptions) -> Result<authalic::Repaired, Error> {
+        match self {
+            Self::Handle(surface) => authalic::repair(surface.vertices(), surface.faces(), options),
+            Self::Arrays(vertices, faces) => authalic::repair(vertices, faces, options),
         }
     }
 }
@@ -402,11 +443,11 @@ pub fn oriented(surface: &authalic::Surface) -> Array2<u32> {
     surface.oriented_faces().expect("a surface that was mapped is orientable")
 }
 
-/// The surface behind a Surface or a Patch.
+/// The surface behind a Surface, or an object that has one: a Patch or a Repaired.
 pub fn handle(object: &Bound<'_, PyAny>) -> Option<authalic::Surface> {
     if let Ok(surface) = object.cast::<Surface>() {
         return Some(surface.get().handle.clone());
     }
-    let patch = object.cast::<Patch>().ok()?;
-    Some(patch.get().surface.get().handle.clone())
+    let inner = object.getattr_opt(intern!(object.py(), "surface")).ok()??;
+    Some(inner.cast::<Surface>().ok()?.get().handle.clone())
 }

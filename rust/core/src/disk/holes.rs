@@ -6,7 +6,7 @@
 //! dropped from the result.
 
 use crate::error::Error;
-use crate::mesh::geometry::{area, area_vector};
+use crate::filling::{apex_of, spanned_area};
 use crate::mesh::{TriangleMesh, Vertex};
 use crate::vector::{Vector3, coordinates};
 
@@ -57,44 +57,4 @@ fn fill(hole: &[Vertex], points: &mut Vec<Vector3>, faces: &mut Vec<[Vertex; 3]>
         // the loop has the surface on its left, the fan lies on its right
         faces.push([hole[(k + 1) % hole.len()], hole[k], apex]);
     }
-}
-
-/// Area of the flat polygon nearest to a loop: the length of its area vector.
-fn spanned_area(corners: &[Vector3]) -> f64 {
-    loop_normal(corners).norm()
-}
-
-/// Σ of the area vectors of the fan around the centroid.
-fn loop_normal(corners: &[Vector3]) -> Vector3 {
-    let center = centroid(corners);
-    edges(corners).fold(Vector3::ZERO, |sum, (from, to)| sum + area_vector([center, from, to]))
-}
-
-/// A point beside the centroid that lies on the line of no edge: the candidate whose thinnest fan triangle
-/// is fattest.
-pub(crate) fn apex_of(corners: &[Vector3]) -> Vector3 {
-    let (center, normal) = (centroid(corners), loop_normal(corners));
-    let length: f64 = edges(corners).map(|(from, to)| (to - from).norm()).sum();
-    let mut directions = vec![Vector3::ZERO];
-    directions.extend([0, 1, 2].map(Vector3::unit));
-    if normal.norm() > 0.0 {
-        let unit = normal.normalized();
-        directions.push(unit);
-        directions.extend(edges(corners).take(1).map(|(from, to)| unit.cross(to - from)));
-    }
-    let candidates = directions.into_iter().map(|direction| center + direction * (0.1 * length));
-    let thinnest = |apex: &Vector3| {
-        edges(corners)
-            .map(|(from, to)| area([from, to, *apex]) / (to - from).dot(to - from))
-            .fold(f64::INFINITY, f64::min)
-    };
-    candidates.max_by(|a, b| thinnest(a).total_cmp(&thinnest(b))).expect("there are candidates")
-}
-
-fn centroid(corners: &[Vector3]) -> Vector3 {
-    corners.iter().fold(Vector3::ZERO, |sum, &corner| sum + corner) * (1.0 / corners.len() as f64)
-}
-
-fn edges(corners: &[Vector3]) -> impl Iterator<Item = (Vector3, Vector3)> {
-    (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]))
 }

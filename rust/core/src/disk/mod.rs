@@ -35,7 +35,7 @@ use crate::parallel;
 
 use crate::codomain::planar::PlanarMap;
 use free::QuickStart;
-pub(crate) use holes::{apex_of, closed};
+pub(crate) use holes::closed;
 pub use many::disk_maps;
 pub use options::{Boundary, DiskMapOptions, DiskMethod};
 use run::Run;

@@ -112,12 +112,18 @@ pub enum MeshError {
 
     /// One surface was asked for and the mesh falls into several pieces.
     #[error(
-        "the mesh is {} separate pieces, first faces {faces}: map each piece by itself (cut returns them)",
-        .faces.count
+        "the mesh is {} separate pieces, first faces {faces}: {}",
+        .faces.count,
+        match coincident {
+            0 => "map each piece by itself (cut returns them)".into(),
+            points => format!("{points} points of their open edges lie at the same places, so merge equal points"),
+        }
     )]
     SeveralComponents {
         /// The lowest face of each component.
         faces: Elements,
+        /// The number of points of open edges that lie at the place of another one.
+        coincident: usize,
     },
 
     /// A disk was asked for and the surface has no boundary.
@@ -141,18 +147,24 @@ pub enum MeshError {
 
     /// A sphere was asked for and the surface has a boundary.
     #[error(
-        "the surface has {}, at {}; a sphere has none: close the holes, or map the surface by disk_map",
+        "the surface has {}, at {}; a sphere has none: {}",
         match sizes.len() {
             1 => format!("a boundary loop of {} edges", sizes[0]),
             loops => format!("{loops} boundary loops of {} edges", list(sizes)),
         },
-        .vertices.named("vertex")
+        .vertices.named("vertex"),
+        match coincident {
+            0 => "close the holes, or map the surface by disk_map".into(),
+            points => format!("{points} points there lie at the same places, so merge equal points"),
+        }
     )]
     OpenSurface {
         /// A vertex of each loop, the longest loop first.
         vertices: Elements,
         /// The edge counts of the same loops.
         sizes: Vec<usize>,
+        /// The number of points of the loops that lie at the place of another one.
+        coincident: usize,
     },
 
     /// A sphere was asked for and the surface has handles.
@@ -245,7 +257,7 @@ impl MeshError {
             | Self::RepeatedVertex { faces }
             | Self::DuplicateFaces { faces }
             | Self::ZeroArea { faces }
-            | Self::SeveralComponents { faces } => Some(faces),
+            | Self::SeveralComponents { faces, .. } => Some(faces),
             Self::NonManifoldEdges { edges } | Self::NotOrientable { edges } => Some(edges),
             Self::SeamOutOfRange { seams, .. } | Self::SeamNotEdge { seams } => Some(seams),
             _ => None,

@@ -15,11 +15,13 @@
 use ndarray::{Array2, CowArray, Ix2};
 
 use super::corners::{EdgeTable, VertexCorners};
+use super::fans::fans;
 use super::orientation::Orientation;
 use super::topology::Topology;
 use super::{Corner, Face, Surface, Vertex, geometry, validate};
 use crate::arrays::{from_rows, rows_of};
 use crate::error::{Elements, Error, MeshError};
+use crate::sets::Sets;
 
 /// A connected part of a cut surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,7 +73,7 @@ fn along(surface: &Surface, seams: &[[Vertex; 2]]) -> Result<Vec<Patch>, Error> 
     open_seams(&table, seams, &mut opposite)?;
     drop(table);
     // 3. The corners of each vertex, and the faces of each patch.
-    let joined = join_corners(faces, &opposite);
+    let joined = fans(faces, &opposite);
     let components = Orientation::propagate(faces, &opposite);
     drop(opposite);
     // 4. The patches.
@@ -125,27 +127,11 @@ fn open_seams(
     validate::refuse(Elements::edges(unknown), |seams| MeshError::SeamNotEdge { seams })
 }
 
-/// Joins the corners at both ends of every edge between neighbors.
-fn join_corners(faces: &[[Vertex; 3]], opposite: &[Option<Corner>]) -> UnionFind {
-    let mut joined = UnionFind::new(faces.len());
-    for corner in Corner::all(faces.len()) {
-        // each pair once
-        let Some(across) = opposite[corner].filter(|&across| across > corner) else { continue };
-        let [mut first, mut second] = [across.next(), across.previous()];
-        if corner.next().vertex(faces) != first.vertex(faces) {
-            [first, second] = [second, first];
-        }
-        joined.join(corner.next(), first);
-        joined.join(corner.previous(), second);
-    }
-    joined
-}
-
 /// Numbers the joined corners within their patches by (input vertex, first corner); returns their numbers.
 fn number_vertices(
     vertices: &[[f64; 3]],
     faces: &[[Vertex; 3]],
-    mut joined: UnionFind,
+    mut joined: Sets,
     patch_of: &[u32],
     drafts: &mut [Draft],
 ) -> Vec<Vertex> {
@@ -154,7 +140,7 @@ fn number_vertices(
     let mut numbers = vec![UNNUMBERED; 3 * faces.len()];
     for (v, &position) in Vertex::all(vertices.len()).zip(vertices) {
         for &corner in corners.of(v) {
-            let root = joined.root(corner);
+            let root = joined.root(corner.index());
             if numbers[root] == UNNUMBERED {
                 let draft = &mut drafts[patch_of[corner.face()] as usize];
                 numbers[root] = Vertex::new(draft.vertices.len());
@@ -172,30 +158,5 @@ fn collect_faces(numbers: Vec<Vertex>, patch_of: &[u32], drafts: &mut [Draft]) {
         let draft = &mut drafts[patch_of[face] as usize];
         draft.faces.push(face.corners().map(|corner| numbers[corner]));
         draft.corner_of.push(face.corners().map(|corner| corner.index() as u32));
-    }
-}
-
-/// Disjoint sets of corners; the root of a set is its smallest member.
-struct UnionFind {
-    parent: Vec<Corner>,
-}
-
-impl UnionFind {
-    fn new(n_faces: usize) -> Self {
-        Self { parent: Corner::all(n_faces).collect() }
-    }
-
-    fn root(&mut self, mut corner: Corner) -> Corner {
-        while self.parent[corner] != corner {
-            let grandparent = self.parent[self.parent[corner]];
-            self.parent[corner] = grandparent;
-            corner = grandparent;
-        }
-        corner
-    }
-
-    fn join(&mut self, a: Corner, b: Corner) {
-        let [a, b] = [self.root(a), self.root(b)];
-        self.parent[a.max(b)] = a.min(b);
     }
 }

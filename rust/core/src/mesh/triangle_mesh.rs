@@ -272,7 +272,11 @@ impl TriangleMesh {
     pub fn require_sphere(&self) -> Result<(), Error> {
         self.require_one_component()?;
         let (vertices, sizes) = described(&self.topology.boundary_loops);
-        validate::refuse(vertices, |vertices| MeshError::OpenSurface { vertices, sizes })?;
+        validate::refuse(vertices, |vertices| MeshError::OpenSurface {
+            vertices,
+            sizes,
+            coincident: self.n_coincident(),
+        })?;
         match self.genus() {
             0 => Ok(()),
             genus => Err(MeshError::SphereHasHandles { genus }.into()),
@@ -295,7 +299,19 @@ impl TriangleMesh {
         let first_faces = &self.topology.first_faces;
         let faces = Elements::collect(first_faces.iter().copied());
         let several = faces.filter(|_| first_faces.len() > 1);
-        validate::refuse(several, |faces| MeshError::SeveralComponents { faces })
+        validate::refuse(several, |faces| MeshError::SeveralComponents {
+            faces,
+            coincident: self.n_coincident(),
+        })
+    }
+
+    /// The number of boundary points that lie at the place of another one.
+    fn n_coincident(&self) -> usize {
+        let boundary = self.topology.boundary_loops.iter().flatten();
+        // adding zero makes −0 and 0 the same
+        let mut places: Vec<_> = boundary.map(|&v| self.points[v].0.map(|x| (x + 0.0).to_bits())).collect();
+        places.sort_unstable();
+        places.chunk_by(|one, next| one == next).map(<[_]>::len).filter(|&points| points > 1).sum()
     }
 }
 

@@ -24,6 +24,12 @@ pub(super) fn arrays(vertices: &[[f64; 3]], faces: &[[Vertex; 3]]) -> Result<(),
     distinct_corners(faces)
 }
 
+/// Checks that there are vertices and faces, and that the faces are between these vertices.
+pub(crate) fn check_indices(n_vertices: usize, faces: &[[Vertex; 3]]) -> Result<(), MeshError> {
+    sizes(n_vertices, faces.len())?;
+    in_range(n_vertices, faces)
+}
+
 fn sizes(n_vertices: usize, n_faces: usize) -> Result<(), MeshError> {
     match (n_vertices, n_faces) {
         (0, _) => Err(MeshError::NoVertices),

@@ -2,18 +2,15 @@
 //! Holes that are filled for the time of a registration, so that surfaces with different numbers of holes, and open and
 //! closed ones, can be registered.
 //!
-//! A hole is filled by rings of vertices that grow coarser toward its middle, each the mean of its neighbors: a smooth
-//! membrane. The filled surfaces are registered; the result is that of the given vertices and faces. Where a vertex of
-//! the source comes to lie on a filling of the target, it has a position there and its data from the nearest place of
-//! the surface.
+//! A hole is filled by a smooth [membrane]. The filled surfaces are registered; the result is that of the given vertices
+//! and faces. Where a vertex of the source comes to lie on a filling of the target, it has a position there and its data
+//! from the nearest place of the surface.
 //!
 //! Cost: one sparse LU with some three unknowns per vertex of a hole.
 
-use std::iter::successors;
 use std::sync::Arc;
 
 use ndarray::{Array2, ArrayView2, Axis, Slice, concatenate};
-use sprs::TriMat;
 
 use super::Landmarks;
 use super::features::Features;
@@ -21,23 +18,13 @@ use super::options::RegistrationOptions;
 use super::result::Registration;
 use crate::arrays::{rows, vectors};
 use crate::control::Observer;
-use crate::disk::{DiskMap, apex_of};
+use crate::disk::DiskMap;
 use crate::distortion::{Distortion, Image, measure};
 use crate::error::{Error, Side};
-use crate::mesh::geometry::area;
+use crate::filling::membrane;
 use crate::mesh::{Surface, TriangleMesh, Vertex};
-use crate::sparse::solve_general;
 use crate::sphere::SphereMap;
-use crate::vector::{Vector3, coordinates};
-
-/// The number of vertices of a ring over that of the ring around it.
-const COARSER: f64 = 0.7;
-
-/// Rings of at most so many vertices have the middle inside.
-const INNERMOST: usize = 8;
-
-/// Faces of a filling are no smaller than this, relative to the square of their longest edge.
-const THINNEST: f64 = 1e-3;
+use crate::vector::coordinates;
 
 /// Which holes are filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -143,7 +130,7 @@ impl Filled {
         let mut holes = Vec::new();
         for hole in loops {
             let before = points.len();
-            fill(hole, &mut points, &mut faces);
+            membrane(hole, &mut points, &mut faces);
             holes.push(Hole { rim: hole.clone(), n_vertices: points.len() - before });
         }
         if holes.is_empty() {
@@ -167,92 +154,6 @@ impl Filled {
         }
         extended
     }
-}
-
-/// Fills one hole by rings of vertices, or by a cone where those would have faces without area.
-fn fill(hole: &[Vertex], points: &mut Vec<Vector3>, faces: &mut Vec<[Vertex; 3]>) {
-    let (n_points, n_faces) = (points.len(), faces.len());
-    // 1. Rings that grow coarser, and the middle
-    let counts = successors(Some(hole.len()), |&count| {
-        (count > INNERMOST).then(|| ((COARSER * count as f64).round() as usize).max(5))
-    });
-    let mut rings: Vec<Vec<Vertex>> = Vec::new();
-    let mut next = n_points;
-    for count in counts {
-        rings.push(if rings.is_empty() {
-            hole.to_vec()
-        } else {
-            (next..next + count).map(Vertex::new).collect()
-        });
-        next += if rings.len() == 1 { 0 } else { count };
-    }
-    let middle = Vertex::new(next);
-    rings.windows(2).for_each(|pair| stitch(&pair[0], &pair[1], faces));
-    let innermost = rings.last().expect("the hole is the first");
-    for k in 0..innermost.len() {
-        faces.push([innermost[(k + 1) % innermost.len()], innermost[k], middle]);
-    }
-    // 2. Each vertex the mean of its neighbors
-    let membrane = membrane(n_points, next + 1 - n_points, &faces[n_faces..], points);
-    if let Some(membrane) = membrane {
-        points.extend(membrane);
-        let is_fat = |face: &[Vertex; 3]| {
-            let [a, b, c] = face.map(|vertex| points[vertex]);
-            let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-            area([a, b, c].map(|x| x * (1.0 / longest))) > THINNEST
-        };
-        if faces[n_faces..].iter().all(is_fat) {
-            return;
-        }
-    }
-    // 3. Or a cone
-    points.truncate(n_points);
-    faces.truncate(n_faces);
-    let rim: Vec<Vector3> = hole.iter().map(|&vertex| points[vertex]).collect();
-    points.push(apex_of(&rim));
-    let apex = Vertex::new(n_points);
-    faces.extend((0..hole.len()).map(|k| [hole[(k + 1) % hole.len()], hole[k], apex]));
-}
-
-/// The faces between a ring and the next one inside. The ring has the surface on its left and these on its right.
-fn stitch(outer: &[Vertex], inner: &[Vertex], faces: &mut Vec<[Vertex; 3]>) {
-    let (n, m) = (outer.len(), inner.len());
-    let (mut i, mut j) = (0, 0);
-    while i < n || j < m {
-        let [here, there] = [outer[i % n], inner[j % m]];
-        // the ring that lags behind goes on: (i + 1)/n against (j + 1)/m
-        if j == m || (i < n && (i + 1) * m <= (j + 1) * n) {
-            i += 1;
-            faces.push([outer[i % n], here, there]);
-        } else {
-            j += 1;
-            faces.push([here, there, inner[j % m]]);
-        }
-    }
-}
-
-/// The places of `count` new vertices from number `first`, each the mean of its neighbors in `faces`; `None` where the
-/// system is singular.
-fn membrane(first: usize, count: usize, faces: &[[Vertex; 3]], points: &[Vector3]) -> Option<Vec<Vector3>> {
-    let mut matrix = TriMat::new((count, count));
-    let mut rhs = vec![0.0; 3 * count];
-    // around an inner vertex every edge belongs to two faces, in one of them in each direction
-    for face in faces {
-        for k in 0..3 {
-            let (from, to) = (face[k].index(), face[(k + 1) % 3].index());
-            if from < first {
-                continue;
-            }
-            let row = from - first;
-            matrix.add_triplet(row, row, 1.0);
-            match to.checked_sub(first) {
-                Some(column) => matrix.add_triplet(row, column, -1.0),
-                None => (0..3).for_each(|axis| rhs[axis * count + row] += points[to][axis]),
-            }
-        }
-    }
-    solve_general(&matrix.to_csc(), &mut rhs).ok()?;
-    Some((0..count).map(|row| Vector3::from_fn(|axis| rhs[axis * count + row])).collect())
 }
 
 /// What a filled surface has for the given vertices and faces, which come first.

@@ -16,6 +16,7 @@ use super::cut::Cut;
 use super::edge_mesh::EdgeMesh;
 use super::paths::Paths;
 use crate::mesh::{Edge, Vertex};
+use crate::sets::Sets;
 
 /// The number of roots tried.
 const ROOTS: usize = 8;
@@ -121,32 +122,6 @@ fn trim(mesh: &EdgeMesh, cut: &mut Cut, given: &Cut) {
         if degrees[neighbor] == 1 {
             pending.push(neighbor);
         }
-    }
-}
-
-/// Disjoint sets of numbers.
-struct Sets {
-    parent: Vec<usize>,
-}
-
-impl Sets {
-    fn new(n: usize) -> Self {
-        Self { parent: (0..n).collect() }
-    }
-
-    fn root(&mut self, mut member: usize) -> usize {
-        while self.parent[member] != member {
-            self.parent[member] = self.parent[self.parent[member]];
-            member = self.parent[member];
-        }
-        member
-    }
-
-    /// Joins two sets; false where they are one already.
-    fn join(&mut self, a: usize, b: usize) -> bool {
-        let [a, b] = [self.root(a), self.root(b)];
-        self.parent[a.max(b)] = a.min(b);
-        a != b
     }
 }
 

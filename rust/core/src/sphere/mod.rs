@@ -12,6 +12,7 @@
 
 mod alignment;
 mod gauss_newton;
+mod holes;
 mod options;
 mod published;
 mod refinement;
@@ -20,9 +21,9 @@ mod start;
 mod stereographic;
 pub(crate) mod unfold;
 
-use ndarray::{Array2, aview2};
+use ndarray::{Array2, Axis, Slice, aview2};
 
-use crate::arrays::{from_vectors, rows_of};
+use crate::arrays::{from_vectors, rows_of, vectors};
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Distortion, Image, measure, targets};
 use crate::error::Error;
@@ -96,6 +97,9 @@ pub(crate) fn map_sphere(
 ) -> Result<SphereMap, Error> {
     let mut history = History::start();
     let options = &options.by_ref();
+    if options.fill_holes && !mesh.topology().is_closed() {
+        return map_filled(mesh, options, observer);
+    }
     // 1. Check the surface and the options
     options.check(mesh)?;
     // 2. Targets, and each vertex's share of them
@@ -146,6 +150,27 @@ pub(crate) fn map_sphere(
         targets: targets.into_owned(),
         refinement,
     })
+}
+
+/// The map of a surface with holes, which are filled for the time of the map.
+fn map_filled(
+    mesh: &TriangleMesh,
+    options: &SphereMapOptions<'_>,
+    observer: &mut dyn Observer,
+) -> Result<SphereMap, Error> {
+    // 1. The filled surface
+    holes::check(options)?;
+    let given = targets(options.density, mesh.face_areas())?.into_owned();
+    let filled = holes::fill_holes(mesh, &given)?;
+    // 2. Its map
+    let density = Some(filled.targets.view());
+    let options = SphereMapOptions { density, fill_holes: false, ..options.by_ref() };
+    let map = map_sphere(&filled.mesh, &options, observer)?;
+    // 3. The part of the given surface
+    let positions = map.positions.slice_axis(Axis(0), Slice::from(..mesh.n_vertices())).to_owned();
+    let image = vectors(positions.view());
+    let distortion = measure(mesh.points(), mesh.faces(), Image::Sphere(&image), &given)?;
+    Ok(SphereMap { positions, distortion, targets: given, ..map })
 }
 
 /// The map aligned with its surface, or unchanged where a start was given.

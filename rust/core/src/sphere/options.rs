@@ -57,6 +57,8 @@ pub struct SphereMapOptions<'a> {
     /// Split faces that keep areas uneven, as those of long limbs do, for Gauss–Newton only; by default off. The iteration
     /// limit applies to each of up to four descents.
     pub refine: bool,
+    /// Fill all holes for the time of the map instead of refusing an open surface; by default off.
+    pub fill_holes: bool,
     /// Unfold the faces that the papers' methods fold; by default on. The paper's tables also count folds before that.
     pub unfold: bool,
 }
@@ -73,6 +75,7 @@ impl Default for SphereMapOptions<'_> {
             max_iterations: None,
             tolerance: None,
             refine: false,
+            fill_holes: false,
             unfold: true,
         }
     }

@@ -15,6 +15,7 @@ mod mesh;
 mod optimize;
 mod packing;
 mod registration;
+mod repair;
 mod seams;
 mod spatial_energy;
 mod sphere;

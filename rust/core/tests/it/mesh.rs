@@ -273,7 +273,7 @@ fn what_is_no_disk_is_told_why() {
     let first = common::cap(4, 1.).faces.len();
     assert_eq!(
         refused(common::two_pieces()),
-        MeshError::SeveralComponents { faces: elements(&[0, first], 2) }.into()
+        MeshError::SeveralComponents { faces: elements(&[0, first], 2), coincident: 0 }.into()
     );
     let mesh = common::holed_grid().mesh();
     let starts: Vec<usize> = mesh.boundary_loops().iter().map(|l| l[0].index()).collect();

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Repairs: sound meshes stay as they are, and any triangles become an oriented manifold.
+
+use authalic::{CloseHandles, CloseHoles, Error, Keep, MeshError, RepairOptions, Repaired, repair};
+use ndarray::{Array2, aview2};
+use proptest::prelude::*;
+
+use crate::common;
+
+fn repaired(vertices: &[[f64; 3]], faces: &[[u32; 3]], options: &RepairOptions) -> Result<Repaired, Error> {
+    repair(aview2(vertices), aview2(faces), options)
+}
+
+#[test]
+fn sound_meshes_stay_as_they_are() {
+    for test in common::orientable() {
+        let options = RepairOptions { close_holes: CloseHoles::Off, ..Default::default() };
+        let result = repaired(&test.vertices, &test.faces, &options).unwrap();
+        let turned = test.mesh().flipped_faces().len();
+        assert_eq!(result.counts.turned_faces, turned, "{}", test.name);
+        assert_eq!(result.is_changed(), turned > 0, "{}", test.name);
+        assert_eq!(result.surface.vertices(), aview2(&test.vertices), "{}", test.name);
+        assert_eq!(result.surface.n_faces(), test.faces.len(), "{}", test.name);
+        assert_eq!(result.surface.topology(), Ok(test.mesh().topology()), "{}", test.name);
+    }
+}
+
+#[test]
+fn the_handle_of_a_torus_is_closed_and_its_measure_carried() {
+    let test = common::torus(24, 12);
+    let options = RepairOptions { close_handles: CloseHandles::All, ..Default::default() };
+    let result = repaired(&test.vertices, &test.faces, &options).unwrap();
+    assert_eq!((result.counts.closed_handles, result.surface.topology().unwrap().genus), (1, Some(0)));
+    assert!(result.surface.topology().unwrap().is_closed());
+    // faces that were added have the mean of the measure that all others have
+    let measure = result.measure(ndarray::Array1::ones(test.faces.len()).view()).unwrap();
+    let added = result.face_of.iter().zip(&measure).filter(|(face, _)| face.is_none());
+    assert!(added.clone().count() > 0 && added.clone().all(|(_, &measure)| measure > 0.0));
+    let kept = result.face_of.iter().zip(&measure).filter(|(face, _)| face.is_some());
+    assert!(kept.clone().all(|(_, &measure)| (measure - 1.0).abs() < 1e-12));
+    let short = ndarray::Array1::ones(3);
+    assert!(matches!(result.measure(short.view()), Err(Error::InvalidArray { name: "density", .. })));
+}
+
+#[test]
+fn arrays_that_are_no_mesh_are_refused() {
+    let options = RepairOptions::default();
+    let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let refused = |faces: &[[u32; 3]]| repaired(&vertices, faces, &options).unwrap_err();
+    assert_eq!(refused(&[]), MeshError::NoFaces.into());
+    assert_eq!(refused(&[[0, 1, 1]]), MeshError::NoFaces.into());
+    assert!(matches!(refused(&[[0, 1, 3]]), Error::Mesh(MeshError::IndexOutOfRange { value: 3, .. })));
+    let flat = repair(Array2::zeros((3, 2)), ndarray::array![[0, 1, 2]], &options);
+    assert!(matches!(flat, Err(Error::InvalidArray { name: "vertices", .. })));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    /// Points of a small grid, so that many are equal and many faces flat, repeated or no manifold.
+    #[test]
+    fn any_triangles_become_a_manifold(
+        points in prop::collection::vec([0..4u8, 0..4u8, 0..3u8], 3..40),
+        corners in prop::collection::vec([0..40usize, 0..40, 0..40], 1..90),
+        largest in any::<bool>(),
+    ) {
+        let vertices: Vec<[f64; 3]> = points.iter().map(|point| point.map(f64::from)).collect();
+        let faces: Vec<[u32; 3]> =
+            corners.iter().map(|face| face.map(|corner| (corner % vertices.len()) as u32)).collect();
+        let keep = if largest { Keep::Largest } else { Keep::All };
+        let options =
+            RepairOptions { keep, close_handles: CloseHandles::All, close_holes: CloseHoles::All, ..Default::default() };
+        let result = match repaired(&vertices, &faces, &options) {
+            Ok(result) => result,
+            Err(error) => {
+                prop_assert_eq!(error, MeshError::NoFaces.into());
+                return Ok(());
+            }
+        };
+        match result.surface.topology() {
+            Ok(topology) => {
+                prop_assert!(topology.is_closed());
+                prop_assert_eq!(topology.genus, Some(0));
+                prop_assert!(!largest || topology.n_components() == 1);
+            }
+            Err(error) => prop_assert!(
+                matches!(error, Error::Mesh(MeshError::NotOrientable { .. })),
+                "{:?}: {}", result.counts, error
+            ),
+        }
+        // the maps agree with each other
+        let given = |vertex: &authalic::Vertex| vertices[vertex.index()];
+        for (vertex, place) in result.vertex_of.iter().zip(result.surface.vertices().rows()) {
+            prop_assert!(vertex.is_none_or(|vertex| given(&vertex)[..] == *place.as_slice().unwrap()));
+        }
+        for (given, face) in result.face_to.iter().enumerate() {
+            prop_assert!(face.is_none_or(|face| result.face_of[face.index()].unwrap().index() == given));
+        }
+    }
+}

@@ -43,14 +43,10 @@ impl Draft {
         let mut is_used = vec![false; self.points.len()];
         self.faces.as_flattened().iter().for_each(|&vertex| is_used[vertex] = true);
         let mut numbers = vec![None; self.points.len()];
-        let mut next = 0;
-        for (number, _) in numbers.iter_mut().zip(&is_used).filter(|(_, is_used)| **is_used) {
-            *number = Some(Vertex::new(next));
-            next += 1;
-        }
-        let is_used = |vertex: Vertex| numbers[vertex].is_some();
-        retain(&mut self.points, |vertex| is_used(Vertex::new(vertex)));
-        retain(&mut self.vertex_of, |vertex| is_used(Vertex::new(vertex)));
+        let used = Vertex::all(self.points.len()).filter(|&vertex| is_used[vertex]);
+        used.enumerate().for_each(|(number, vertex)| numbers[vertex] = Some(Vertex::new(number)));
+        retain(&mut self.points, |vertex| is_used[vertex]);
+        retain(&mut self.vertex_of, |vertex| is_used[vertex]);
         let renumbered = |vertex: Vertex| numbers[vertex].unwrap_or_default();
         self.faces.iter_mut().for_each(|face| *face = face.map(renumbered));
         self.vertex_to.iter_mut().for_each(|vertex| *vertex = vertex.and_then(|vertex| numbers[vertex]));

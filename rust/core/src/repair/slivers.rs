@@ -103,10 +103,9 @@ impl<'a> Round<'a> {
         let distance = corners[tip.place()].distance(corners[near.place()]);
         // 2. Two corners at one place, or a corner on the longest edge
         let [tip_vertex, near_vertex] = [tip, near].map(|corner| corner.vertex(&self.draft.faces));
-        if distance > self.same_place && self.may_flip {
-            if let Some(flipped) = self.flip(tip) {
-                return flipped;
-            }
+        let flipped = if distance > self.same_place && self.may_flip { self.flip(tip) } else { None };
+        if let Some(flipped) = flipped {
+            return flipped;
         }
         self.joined.join(tip_vertex.index(), near_vertex.index());
         false

@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import pytest
-from api import meshes
+from api import meshes, real_meshes
 
 import authalic
 from authalic.io import MeshData, read_mesh, read_values, write_mesh, write_values
@@ -44,6 +44,18 @@ def test_a_cortex_becomes_a_sphere_that_freesurfer_and_nibabel_read(run, folder)
     shares = areas / areas.sum(axis=1, keepdims=True)
     expected = np.log2(shares[1] / shares[0])
     assert np.allclose(nibabel_io.read_morph_data("lh.areal"), expected, atol=1e-4)
+
+
+def test_the_cortex_of_fsaverage5_keeps_its_areas(run, folder):
+    nibabel_io = pytest.importorskip("nibabel.freesurfer.io")
+    with np.load(real_meshes.file("brain/fsaverage5_left_10242.npz")) as arrays:
+        nibabel_io.write_geometry("lh.white", arrays["V_white"], arrays["F"])
+        nibabel_io.write_geometry("lh.sphere", arrays["V_sphere"], arrays["F"])
+    record = run("sphere", "lh.white", "--json").record
+    measured = run("measure", "lh.white", "lh.authalic.sphere", "--json").record
+    theirs = run("measure", "lh.white", "lh.sphere", "--json").record
+    assert record["folded_in_file"] == 0 and measured["folded"] == 0
+    assert record["area_ratio_std"] < 0.005 and measured["area_ratio_std"] < 0.005 < theirs["area_ratio_std"]
 
 
 def test_gifti_goes_in_and_out_with_values(run, folder):

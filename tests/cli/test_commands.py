@@ -265,3 +265,39 @@ def test_progress_is_a_bar_on_a_terminal(folder):
     shown = os.read(leader, 100_000)
     os.close(leader)
     assert done.returncode == 0 and b"sphere" in shown and b"\x1b[" in shown
+
+
+def test_repair_merges_what_stl_keeps_apart(run, folder):
+    mesh = meshes.bumpy_ball()
+    write_mesh(folder / "apart.stl", MeshData(*mesh))
+    assert run("sphere", "apart.stl").code == 4
+    result = run("repair", "apart.stl", "whole.npz", "--json")
+    assert result.code == 0, result.err
+    whole = read_mesh(folder / "whole.npz")
+    assert (len(whole.vertices), len(whole.faces)) == (258, 512)
+    apart, arrays = read_mesh(folder / "apart.stl"), np.load(folder / "whole.npz")
+    assert np.array_equal(whole.vertices[arrays["vertex_to"]], apart.vertices)
+    assert result.record["repairs"] and "258 vertices" in result.record["repair_report"][-1]
+    assert run("repair", "apart.stl", "still.ply", "--merge", "none").code == 0
+    assert len(read_mesh(folder / "still.ply").vertices) == 3 * 512
+    assert run("repair", "apart.stl", "bad.ply", "--close-holes", "some").code == 2
+
+
+def test_maps_repair_first(run, folder):
+    write_mesh(folder / "apart.stl", MeshData(*meshes.bumpy_ball()))
+    result = run("sphere", "apart.stl", "sphere.off", "--repair", "--areal", "areal.npy")
+    assert result.code == 0 and "merged" in result.out
+    points = read_mesh(folder / "sphere.off").vertices
+    assert points.shape == (258, 3) and np.allclose(np.linalg.norm(points, axis=1), 1)
+    assert read_values(folder / "areal.npy").shape == (258,)
+    write_mesh(folder / "cap.stl", MeshData(*meshes.bumpy_cap()))
+    assert run("disk", "cap.stl", "disk.obj", "--repair").code == 0
+    assert read_mesh(folder / "disk.obj").uv.shape == (421, 2)
+
+
+def test_a_sphere_with_a_hole_is_filled_virtually(run, folder):
+    vertices, faces = meshes.bumpy_ball()
+    write_mesh(folder / "hole.obj", MeshData(vertices, faces[1:]))
+    assert run("sphere", "hole.obj", "sphere.obj").code == 4
+    assert run("sphere", "hole.obj", "sphere.obj", "--fill-holes").code == 0
+    assert np.array_equal(read_mesh(folder / "sphere.obj").faces, faces[1:])

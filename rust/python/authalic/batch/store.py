@@ -27,9 +27,9 @@ _COLUMNS = (
     *(("shear", "float64"), ("shear_p99", "float64"), ("packed", "float64"), ("input_sha256", "string")),
     *(("authalic", "string"), ("options", "string"), ("attempts", "int64"), ("worker", "string")),
     *(("error_kind", "string"), ("error_message", "string"), ("error_indices", "string")),
-    ("error_count", "int64"),
+    *(("error_count", "int64"), ("repairs", "string")),
 )
-"""The columns of the table. Options and indices are JSON."""
+"""The columns of the table. Options, indices and repairs are JSON."""
 
 
 def record_path(folder: Path, subject: str) -> Path:
@@ -85,6 +85,7 @@ def _row(record: Record) -> dict[str, Any]:
     known = {name: record.get(name) for name, _ in _COLUMNS}
     return known | {
         "options": json.dumps(record.get("options", {})),
+        "repairs": json.dumps(record["repairs"]) if "repairs" in record else None,
         "error_kind": error.get("kind"),
         "error_message": error.get("message"),
         "error_indices": json.dumps(error["indices"]) if "indices" in error else None,

@@ -60,6 +60,7 @@ def disk(
     type=click.Choice(["gauss_newton", "gradient_descent", "fixed_point"]),
     help="The optimizer. [default: gauss_newton]",
 )
+@options.fill_holes
 @options.descent
 @options.areal_option
 @options.common

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Meshes as they are: info, measure."""
+"""Meshes: info, measure, repair."""
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -57,4 +59,73 @@ def measure(
     Frame(as_json, quiet=False, threads=None).show(record, surface)
 
 
-COMMANDS = (info, measure)
+def _choice(*words: str) -> Callable[[click.Context, click.Parameter, str | None], Any]:
+    """Reads words, and numbers otherwise; all and none stand for True and False."""
+
+    def read(context: click.Context, option: click.Parameter, value: str | None) -> Any:
+        if value is None:
+            return None
+        if value in words:
+            return {"all": True, "none": False}.get(value, value)
+        try:
+            return float(value) if "." in value or "e" in value else int(value)
+        except ValueError as error:
+            known = ", ".join(words)
+            raise click.BadParameter(f"it is a number or {known}, but is {value}", context, option) from error
+
+    return read
+
+
+@click.command()
+@click.argument("surface", type=options.existing_or_stream)
+@click.argument("output", type=options.writable)
+@click.option(
+    "--merge",
+    callback=_choice("none"),
+    help="Merge points of open edges no farther apart than this; none: no points. [default: 0]",
+)
+@click.option(
+    "--close-holes",
+    callback=_choice("all", "none", "pinholes"),
+    help="all, none, pinholes, or those of at most so many edges. [default: pinholes]",
+)
+@click.option("--keep-outline", is_flag=True, default=None, help="Leave the longest loop of each piece open.")
+@click.option(
+    "--close-handles",
+    callback=_choice("all", "none", "noise"),
+    help="all, none, noise, or those that a loop of at most this length opens. [default: none]",
+)
+@click.option("--keep", type=click.Choice(["all", "largest"]), help="The pieces to keep. [default: all]")
+@options.common
+def repair(
+    surface: Path,
+    output: Path,
+    merge: Any,
+    as_json: bool,
+    quiet: bool,
+    threads: int | None,
+    input_format: str | None,
+    output_format: str | None,
+    **arguments: Any,
+) -> None:
+    """Make a SURFACE that can be mapped of any triangles.
+
+    Equal points are merged, bad faces removed, edges of many faces split, faces oriented, pinholes closed.
+    UVs are not kept.
+    """
+    from ..runs.record import given
+    from ..runs.repair import repair_run
+
+    frame = Frame(as_json, quiet, threads)
+    options.check_streams(surface, output, input_format, output_format)
+    chosen = given(arguments)
+    if merge is not None:
+        chosen["merge"] = None if merge is False else merge
+    with options.files(surface, output) as (source, target):
+        record = repair_run(
+            source, target, input_format=input_format, output_format=output_format, options=chosen
+        )
+    frame.show(record, surface, output)
+
+
+COMMANDS = (info, measure, repair)

@@ -45,8 +45,16 @@ def descent(command: Command) -> Command:
         ),
         click.option("--max-iterations", type=click.IntRange(0), help="Iteration limit."),
         click.option("--tolerance", type=float, help="Area deviation below which the map has converged."),
+        click.option(
+            "--repair", is_flag=True, default=None, help="Repair first; the map is of the repaired mesh."
+        ),
     )
     return _all(options, command)
+
+
+fill_holes = click.option(
+    "--fill-holes", is_flag=True, default=None, help="Fill holes virtually: their areas do not count."
+)
 
 
 def boundary(command: Command) -> Command:
@@ -58,9 +66,7 @@ def boundary(command: Command) -> Command:
             help="Where the boundary goes. [default: sliding]",
         ),
         click.option("--aspect", type=float, help="Width over height of the rectangle."),
-        click.option(
-            "--fill-holes", is_flag=True, default=None, help="Fill further boundary loops virtually."
-        ),
+        fill_holes,
         click.option("--overlap", is_flag=True, default=None, help="A free outline may cross itself."),
     )
     return _all(options, command)

@@ -75,6 +75,8 @@ def show_record(record: Mapping[str, Any], as_json: bool, stream: TextIO) -> Non
     place = f" -> {record['output']}" if "output" in record else ""
     print(f"{record['input']}{place}", file=stream)
     print(f"  {record['vertices']:,} vertices, {record['faces']:,} faces", file=stream)
+    for line in record.get("repair_report", ()):
+        print(f"  {line}", file=stream)
     if "status" in record:
         after = f" after {record['iterations']} iterations" if "iterations" in record else ""
         print(f"  {record['status']}{after}, {record['seconds']:.2f} s", file=stream)

@@ -11,6 +11,7 @@ from .._native import disk_map
 from ..io import Format, MeshData, Outputs, mesh_format, value_format
 from ..io.files import save_mesh, save_values
 from .record import Progress, Record, areal_distortion, given, map_figures, read_input
+from .repair import repair_figures, repaired_mesh
 
 
 def disk_run(
@@ -34,7 +35,8 @@ def disk_run(
     # 2. The map
     mesh, record = read_input(source, input_format, "disk", options)
     result = disk_map(mesh.vertices, mesh.faces, **options, progress=progress)
-    record |= map_figures(result)
+    record |= map_figures(result) | repair_figures(result.repaired)
+    mesh = repaired_mesh(mesh, result.repaired)
     # 3. The files
     flat = MeshData(mesh.vertices, mesh.faces, result.uv, mesh.faces, mesh.metadata)
     with Outputs() as outputs:

@@ -11,6 +11,7 @@ from .._native import distortion, sphere_map
 from ..io import MeshData, Outputs, mesh_format
 from .disk import save_flat
 from .record import Progress, Record, distortion_figures, given, read_input
+from .repair import repair_figures, repaired_mesh
 
 
 def layout_run(
@@ -30,6 +31,8 @@ def layout_run(
     # 2. The map, and its layout
     mesh, record = read_input(source, input_format, "layout", {**options, **layout})
     sphere = sphere_map(mesh.vertices, mesh.faces, **options, progress=progress)
+    record |= repair_figures(sphere.repaired)
+    mesh = repaired_mesh(mesh, sphere.repaired)
     flat = sphere.layout(**layout)
     figures = distortion(mesh.vertices[flat.vertex_of], flat.faces, flat.points)
     record |= {"status": flat.status, "seconds": sphere.seconds + flat.seconds} | distortion_figures(figures)

@@ -11,6 +11,7 @@ from .._native import distortion, sphere_map
 from ..io import MeshData, Outputs, mesh_format, value_format
 from ..io.files import save_mesh, save_values
 from .record import Progress, Record, areal_distortion, given, map_figures, read_input
+from .repair import repair_figures, repaired_mesh
 
 FREESURFER_RADIUS = 100.0
 
@@ -55,7 +56,8 @@ def sphere_run(
     # 2. The map
     mesh, record = read_input(source, input_format, "sphere", options)
     result = sphere_map(mesh.vertices, mesh.faces, **options, progress=progress)
-    record |= map_figures(result)
+    record |= map_figures(result) | repair_figures(result.repaired)
+    mesh = repaired_mesh(mesh, result.repaired)
     # 3. The sphere as the file holds it
     radius = radius or (FREESURFER_RADIUS if format.name in ("freesurfer", "gifti") else 1.0)
     points = radius * result.positions

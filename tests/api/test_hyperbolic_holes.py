@@ -72,17 +72,24 @@ def test_what_lies_in_holes_has_data_from_beside_them(energy):
     )
 
 
-def test_a_rim_goes_onto_a_curve_of_a_closed_surface():
+@pytest.mark.parametrize("swapped", [False, True])
+def test_a_rim_goes_onto_a_curve_of_a_closed_surface(swapped):
     pair = pair_of([SOUTH], np.empty((0, 3)))
     ring = curves.ring(pair.target, SOUTH, 0.93)
     pair = pair._replace(
         source_curves=[*pair.source_curves, rim(pair.source, SOUTH)],
         target_curves=[*pair.target_curves, np.append(ring, ring[0])],
     )
+    if swapped:
+        pair = curves.inverted(pair)
     with pytest.raises(authalic.MeshError):
         curves.register(pair)
     result = curves.register(pair, fill_holes=True)
-    curves.assert_closed_curve_meets(result, pair, len(LINES))
+    curves.assert_closed_curve_meets(
+        result, pair, len(LINES)
+    )  # the rim is a part of the surface, not of the hole
+    assert not np.isin(pair.source_curves[-1], result.in_holes).any()
+    assert bool(len(result.in_holes)) == swapped
     assert np.isfinite(result.strain.mean) and result.certificates.folded.tolist() == []
 
 

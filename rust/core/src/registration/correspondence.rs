@@ -19,7 +19,7 @@ use crate::control::{Observer, Watch};
 use crate::error::{Error, Side};
 use crate::location::{Location, Locator, points_on};
 use crate::mesh::geometry::{face_areas, normalized};
-use crate::mesh::{Corner, Surface, TriangleMesh, Vertex, index_array};
+use crate::mesh::{Corner, Face, Surface, TriangleMesh, Vertex, index_array};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -96,18 +96,17 @@ impl Correspondence {
     }
 
     /// The map of the given surfaces, as this is the map of the same with their holes filled. A place on a filling keeps
-    /// its position; its location is the nearest on the target.
+    /// its position; its location is the nearest on the target. The rim of a hole belongs to the target.
     pub(crate) fn of_given(&self, [source, target]: [&Surface; 2]) -> Self {
         let [source, target] = [self.source.of_given(source), self.target.of_given(target)];
         let locator = Locator::new(&target.in_domain, &target.faces);
-        let (n, m) = (source.in_domain.len(), target.faces.len());
-        let is_in_hole = |vertex: &usize| self.locations[*vertex].triangle.index() >= m;
+        let n = source.in_domain.len();
+        let on_given = parallel::map(n, |vertex| {
+            on_given_face(self.locations[vertex], &self.target.faces, &target.faces, target.in_domain.len())
+        });
+        let is_in_hole = |vertex: &usize| on_given[*vertex].is_none();
         let locations = parallel::map(n, |vertex| {
-            if is_in_hole(&vertex) {
-                locator.locate(source.in_domain[vertex])
-            } else {
-                self.locations[vertex]
-            }
+            on_given[vertex].unwrap_or_else(|| locator.locate(source.in_domain[vertex]))
         });
         let positions = self.positions[..n].to_vec();
         let area_ratio = area_ratios(rows(source.surface.vertices()), &source.faces, &positions);
@@ -301,4 +300,26 @@ fn misfit(shape: &[usize], expected: String) -> Error {
     let lengths: Vec<String> = shape.iter().map(usize::to_string).collect();
     let found = format!("of shape ({})", lengths.join(", "));
     Error::InvalidArray { name: "values", found, expected: format!("of shape {expected}") }
+}
+
+/// A location among the faces of a filled surface as one among the given faces, which come first; `None` inside a filling.
+fn on_given_face(
+    location: Location,
+    filled: &[[Vertex; 3]],
+    given: &[[Vertex; 3]],
+    n_given: usize,
+) -> Option<Location> {
+    if location.triangle.index() < given.len() {
+        return Some(location);
+    }
+    let corners = filled[location.triangle];
+    let weights = location.barycentric;
+    let used: Vec<usize> = (0..3).filter(|&k| weights[k] > 0.0).collect();
+    if used.iter().any(|&k| corners[k].index() >= n_given) {
+        return None;
+    }
+    let face = given.iter().position(|face| used.iter().all(|&k| face.contains(&corners[k])))?;
+    let weight_of =
+        |vertex: Vertex| used.iter().find(|&&k| corners[k] == vertex).map_or(0.0, |&k| weights[k]);
+    Some(Location { triangle: Face::new(face), barycentric: given[face].map(weight_of) })
 }

@@ -17,6 +17,7 @@ from scipy.sparse.csgraph import shortest_path
 import authalic
 import bench.angle.front
 import bench.angle.main
+import bench.batch
 import bench.default
 import bench.fuzz.cases
 import bench.fuzz.main
@@ -261,6 +262,13 @@ def test_every_part_of_the_tables_has_rows(tiny_meshes, tmp_path):
         assert re.search(r"(?m)^\| (cap|ellipsoid)", text) and "Error" not in text, text
         for picture in re.findall(r"!\[.*?\]\((.*?)\)", text):
             assert (target.parent / picture).stat().st_size > 0, picture
+
+
+def test_the_command_line_and_batches_are_measured(tiny_meshes, tmp_path):
+    bench.batch.main([str(tmp_path / "batch.md"), "--count", "2", "--level", "2"])
+    text = (tmp_path / "batch.md").read_text(encoding="utf-8")
+    assert re.search(r"(?m)^\| bumpy sphere \| 162 \|", text) and "| ellipsoid, radius 100 |" in text
+    assert re.search(r"(?m)^\| 1 \| .*\| 1.00 \| 1.00 \|", text) and re.search(r"(?m)^\| 2 \|", text)
 
 
 def test_the_default_is_measured_beside_the_papers_methods(tiny_meshes, tmp_path):

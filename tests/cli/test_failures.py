@@ -113,7 +113,7 @@ sys.exit(main({words}))
     [
         (["click"], ["info", "ball.obj"], "cli"),
         (["rich"], ["info", "ball.obj"], "cli"),
-        (["nibabel"], ["sphere", "ball.obj", "lh.sphere"], "neuro"),
+        (["nibabel"], ["sphere", "ball.obj", "out.surf.gii"], "neuro"),
         (["trimesh"], ["sphere", "ball.obj", "out.glb"], "io"),
         (["meshio"], ["sphere", "ball.obj", "out.ply"], "io"),
     ],

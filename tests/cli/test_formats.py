@@ -254,3 +254,24 @@ def test_files_appear_together_or_not_at_all(tmp_path):
         outputs.add(tmp_path / "old.txt").write_text("new")
         assert (tmp_path / "old.txt").read_text() == "old"
     assert (tmp_path / "old.txt").read_text() == "new" and len(list(tmp_path.iterdir())) == 1
+
+
+def test_freesurfers_old_formats_are_read_by_nibabel(tmp_path):
+    """A quad file: 3-byte integers, coordinates in hundredths; and an old curv file."""
+    pytest.importorskip("nibabel")
+
+    def three(*numbers):
+        return b"".join(int(number).to_bytes(3, "big") for number in numbers)
+
+    points = np.array([[0, 0, 0], [100, 0, 0], [100, 100, 0], [0, 100, 0]], ">i2")
+    (tmp_path / "lh.old").write_bytes(b"\xff\xff\xff" + three(4, 1) + points.tobytes() + three(0, 1, 2, 3))
+    mesh = read_mesh(tmp_path / "lh.old")
+    assert mesh.vertices.tolist() == (points / 100).tolist() and len(mesh.faces) == 2
+    values = np.array([150, -25], ">i2")
+    (tmp_path / "lh.oldcurv").write_bytes(three(2, 0) + values.tobytes())
+    assert read_values(tmp_path / "lh.oldcurv").tolist() == [1.5, -0.25]
+
+
+def test_values_that_a_curv_file_cannot_hold_are_refused(tmp_path):
+    with pytest.raises(FileError, match="single precision"):
+        write_values(tmp_path / "lh.area", [1e39, 0])

@@ -2,9 +2,9 @@
 """Meshes and per-vertex values from files and into files.
 
 Vertices and faces keep the order that they have in the file, and nothing is merged. A file is written beside
-its place and renamed, so that it is whole or not there. OBJ, OFF, npz and tables need numpy alone; the other
-formats need an extra, which the error names: `authalic[io]` (PLY, STL, GLB, glTF, VTK, VTU) or
-`authalic[neuro]` (GIFTI, FreeSurfer).
+its place and renamed, so that it is whole or not there. OBJ, OFF, npz, FreeSurfer and tables need numpy
+alone; the other formats need an extra, which the error names: `authalic[io]` (PLY, STL, GLB, glTF, VTK, VTU)
+or `authalic[neuro]` (GIFTI).
 
 >>> import authalic.io, tempfile, pathlib
 >>> path = pathlib.Path(tempfile.mkdtemp()) / "triangle.obj"

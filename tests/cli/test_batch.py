@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -28,7 +29,7 @@ from authalic.batch import (  # noqa: E402
     schedule,
 )
 from authalic.batch import memory as memory_of_subjects  # noqa: E402
-from authalic.batch.task import Task  # noqa: E402
+from authalic.batch.task import Task, run_task  # noqa: E402
 
 ONLY_POSIX = pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
 
@@ -403,3 +404,9 @@ def test_a_record_that_was_written_before_its_worker_was_lost_is_collected(folde
     client, records = LosingClient(["a", "b"], writes_record=True), []
     schedule.Schedule(client, [lost_task(folder)], 2, records.append).run()
     assert client.sent == [("ball", 1, "a")] and [record["outcome"] for record in records] == ["done"]
+
+
+def test_a_worker_of_another_version_makes_no_map(folder):
+    record = run_task(replace(lost_task(folder), version="0.0.7"))
+    assert record["outcome"] == "failed" and record["error"]["kind"] == "VersionError"
+    assert "but the batch 0.0.7" in record["error"]["message"] and not (folder / "ball.out.obj").exists()

@@ -33,9 +33,18 @@ def connected(scheduler: str | None, workers: int | None, memory: int | None, la
     distributed.Client
         The client.
     """
-    distributed = require("distributed", "a batch", "batch")
-    dask = require("dask", "a batch", "batch")
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    with _quiet(logging.getLogger("distributed")), _client(scheduler, workers, memory, largest) as client:
+        yield client
+
+
+def native_threads(workers: int) -> int:
+    """The share of this machine's processors that each of its workers has."""
+    return max(1, _processors() // workers)
+
+
+@contextlib.contextmanager
+def _client(scheduler: str | None, workers: int | None, memory: int | None, largest: int) -> Iterator[Any]:
+    distributed, dask = require("distributed", "a batch", "batch"), require("dask", "a batch", "batch")
     if scheduler is not None:
         try:
             client = distributed.Client(scheduler, timeout=CONNECT_SECONDS, set_as_default=False)
@@ -66,9 +75,15 @@ def connected(scheduler: str | None, workers: int | None, memory: int | None, la
         yield client
 
 
-def native_threads(workers: int) -> int:
-    """The share of this machine's processors that each of its workers has."""
-    return max(1, _processors() // workers)
+@contextlib.contextmanager
+def _quiet(logger: logging.Logger) -> Iterator[None]:
+    """Workers that come and go are told by the batch itself."""
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
 
 
 def _shares(workers: int | None, memory: int | None, largest: int) -> tuple[int, int]:

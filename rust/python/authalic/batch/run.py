@@ -15,7 +15,7 @@ from ..runs.names import areal_output, map_output
 from ..runs.record import Record, given
 from .cluster import connected, native_threads
 from .errors import SubjectsError
-from .memory import PROCESS, estimate
+from .memory import estimate
 from .schedule import Schedule
 from .store import MAPS, is_done, read_records, remove_record, write_table
 from .subjects import Subject
@@ -261,7 +261,7 @@ def _tasks(
                 command=command,
                 arguments=arguments,
                 fingerprint=fingerprint,
-                memory=estimate(surface, input_format) if command != "unwrap" else PROCESS,
+                memory=estimate(surface, input_format),
             )
         )
     _check_outputs(tasks)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .._native import MeshError, SolverError, set_threads
+from .._native import MeshError, SolverError, __version__, set_threads
 from ..io import FileError, MissingExtra
 from ..runs.disk import disk_run
 from ..runs.measure import problem
@@ -18,6 +18,10 @@ from .store import write_record
 
 RUNS = {"sphere": sphere_run, "disk": disk_run, "unwrap": unwrap_run}
 """The runs that a batch can make of every subject."""
+
+
+class VersionError(RuntimeError):
+    """A worker has another version of Authalic than the batch."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +40,8 @@ class Task:
         Arguments of the run.
     fingerprint : str
         What the result depends on.
+    version : str
+        The version of Authalic that the batch has, and every worker must have.
     threads : int or None
         Native threads; None: as many as the worker has.
     memory : int
@@ -51,6 +57,7 @@ class Task:
     command: str
     arguments: dict[str, Any] = field(default_factory=dict)
     fingerprint: str = ""
+    version: str = __version__
     threads: int | None = None
     memory: int = 0
     attempt: int = 1
@@ -67,10 +74,11 @@ def run_task(task: Task) -> Record:
     set_threads(_worker_threads() if task.threads is None else task.threads)
     # 2. The map
     try:
+        _check_version(task)
         Path(task.output).parent.mkdir(parents=True, exist_ok=True)
         record = RUNS[task.command](Path(task.surface), Path(task.output), **_arguments(task))
         record["outcome"] = "done"
-    except (MeshError, SolverError, FileError, MissingExtra, FileNotFoundError) as error:
+    except (MeshError, SolverError, FileError, MissingExtra, FileNotFoundError, VersionError) as error:
         record = failure(task, error)
     # 3. The record, once the map is there
     record |= {"subject": task.subject, "fingerprint": task.fingerprint, "attempts": task.attempt}
@@ -87,6 +95,14 @@ def failure(task: Task, error: BaseException, kind: str | None = None) -> Record
         **{"outcome": "failed", "command": task.command, "subject": task.subject, "input": task.surface},
         **{"fingerprint": task.fingerprint, "attempts": task.attempt, "error": data},
     }
+
+
+def _check_version(task: Task) -> None:
+    if task.version != __version__:
+        raise VersionError(
+            f"the worker {_worker_name()} has Authalic {__version__}, but the batch {task.version}: "
+            "install the same everywhere"
+        )
 
 
 def _arguments(task: Task) -> dict[str, Any]:

@@ -3,9 +3,9 @@
 A surface out of a soup of triangles
 ====================================
 
-Files of scanners, printers and segmentations hold triangles, but seldom a surface: every face has corners of
-its own, some are missing, some face inward, some appear twice. ``repair`` makes a surface of them and says what
-it did. Every vertex and face knows where it came from.
+Files of scanners, printers and segmentations hold triangles, but seldom a surface: every face has corners
+of its own, some are missing, some face inward, some appear twice. ``repair`` makes a surface of them and
+says what it did. Every vertex and face knows where it came from.
 """
 
 import matplotlib.pyplot as plt
@@ -15,8 +15,8 @@ from pictures import draw_surface, star
 import authalic
 
 # %%
-# A star, and what might be left of it in a file: corners that are not joined, a face here and there missing, turned
-# around, or there twice.
+# A star, and what might be left of it in a file: corners that are not joined, a face here and there
+# missing, turned around, or there twice.
 
 vertices, faces = star()
 chance = np.random.default_rng(3)
@@ -31,7 +31,8 @@ repaired = authalic.repair(soup, triangles)
 print(repaired.report)
 
 # %%
-# What was repaired is mapped like any other surface. Faces that were added close the pinholes; they are red.
+# What was repaired is mapped like any other surface. Faces that were added close the pinholes; they are
+# red.
 
 sphere = authalic.sphere_map(repaired)
 print(sphere)

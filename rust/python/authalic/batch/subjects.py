@@ -41,8 +41,8 @@ def find_subjects(places: Iterable[str | Path], pattern: str | None = None) -> l
         Files of surfaces; folders, which are searched with those below them; and tables: csv or tsv with the
         columns `subject` and `surface`, whose paths are relative to the table.
     pattern : str, optional
-        The names of files in folders, such as "*.pial". Default: all meshes by their suffix, and FreeSurfer's
-        `lh.white` and `rh.white`.
+        The names of files in folders, such as ``"*.pial"``. Default: all meshes by their suffix, and
+        FreeSurfer's `lh.white` and `rh.white`.
 
     Returns
     -------

@@ -115,7 +115,7 @@ sys.exit(main({words}))
         (["rich"], ["info", "ball.obj"], "cli"),
         (["nibabel"], ["sphere", "ball.obj", "out.surf.gii"], "neuro"),
         (["trimesh"], ["sphere", "ball.obj", "out.glb"], "io"),
-        (["meshio"], ["sphere", "ball.obj", "out.ply"], "io"),
+        (["meshio"], ["sphere", "ball.obj", "out.vtu"], "io"),
     ],
 )
 def test_a_missing_package_is_an_error_that_says_which_extra_to_install(absent, words, extra, folder):

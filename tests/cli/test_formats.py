@@ -275,3 +275,66 @@ def test_freesurfers_old_formats_are_read_by_nibabel(tmp_path):
 def test_values_that_a_curv_file_cannot_hold_are_refused(tmp_path):
     with pytest.raises(FileError, match="single precision"):
         write_values(tmp_path / "lh.area", [1e39, 0])
+
+
+def ply(element, rows, coding="binary_little_endian"):
+    """An octahedron's corners and faces; `element` has further properties of the faces."""
+    order = ">" if "big" in coding else "<"
+    vertices = np.zeros(6, [("xyz", order + "f4", 3), ("color", "u1", 4)])
+    vertices["xyz"] = meshes.octahedron().vertices
+    head = (
+        f"ply\nformat {coding} 1.0\ncomment by hand\nelement vertex 6\n"
+        "property float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
+        f"property uchar blue\nproperty uchar alpha\nelement face 8\n{element}end_header\n"
+    )
+    return head.encode() + vertices.tobytes() + rows
+
+
+def test_ply_with_further_properties_of_faces(tmp_path):
+    """As MeshLab writes it: UVs at the corners and colors, after the corners and before them."""
+    faces = meshes.octahedron().faces
+    uv = np.random.default_rng(3).random((8, 6)).astype("f4")
+    for order, coding in (("<", "binary_little_endian"), (">", "binary_big_endian")):
+        kinds = [
+            ("n", "u1"),
+            ("corners", order + "i4", 3),
+            ("k", "u1"),
+            ("uv", order + "f4", 6),
+            ("red", "u1"),
+        ]
+        rows = np.zeros(8, kinds)
+        rows["n"], rows["k"], rows["corners"], rows["uv"], rows["red"] = 3, 6, faces, uv, 200
+        element = (
+            "property list uchar int vertex_indices\nproperty list uchar float texcoord\nproperty uchar red\n"
+        )
+        (tmp_path / "a.ply").write_bytes(ply(element, rows.tobytes(), coding))
+        mesh = read_mesh(tmp_path / "a.ply")
+        assert np.array_equal(mesh.vertices, meshes.octahedron().vertices)
+        assert np.array_equal(mesh.faces, faces)
+        assert np.array_equal(mesh.uv[mesh.uv_faces].reshape(8, 6), uv)
+
+
+def test_binary_ply_with_polygons_of_several_sizes(tmp_path):
+    rows = b"".join(
+        bytes([len(polygon)]) + np.array(polygon, "<u2").tobytes() + bytes([7])
+        for polygon in ([0, 1, 2], [1, 3, 4, 2], [0, 1, 5], *[[3, 4, 5]] * 5)
+    )
+    element = "property list uchar ushort vertex_index\nproperty uchar flags\n"
+    (tmp_path / "a.ply").write_bytes(ply(element, rows))
+    faces = read_mesh(tmp_path / "a.ply").faces.tolist()
+    assert faces == [[0, 1, 2], [1, 3, 4], [1, 4, 2], [0, 1, 5], *[[3, 4, 5]] * 5]
+
+
+def test_our_ply_is_read_by_other_libraries(tmp_path):
+    trimesh, mesh = pytest.importorskip("trimesh"), meshes.bumpy_cap()
+    write_mesh(tmp_path / "a.ply", MeshData(*mesh))
+    theirs = trimesh.load_mesh(tmp_path / "a.ply", process=False)
+    assert np.array_equal(theirs.vertices, mesh.vertices) and np.array_equal(theirs.faces, mesh.faces)
+    theirs = pytest.importorskip("meshio").read(tmp_path / "a.ply")
+    assert np.array_equal(theirs.points, mesh.vertices) and np.array_equal(theirs.cells[0].data, mesh.faces)
+
+
+def test_off_with_colors_of_vertices(tmp_path):
+    (tmp_path / "a.off").write_text("COFF\n3 1 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n0 1 0 1 1 1 1\n3 0 1 2\n")
+    mesh = read_mesh(tmp_path / "a.off")
+    assert mesh.vertices.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]] and mesh.faces.tolist() == [[0, 1, 2]]

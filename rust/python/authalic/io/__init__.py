@@ -2,8 +2,8 @@
 """Meshes and per-vertex values from files and into files.
 
 Vertices and faces keep the order that they have in the file, and nothing is merged. A file is written beside
-its place and renamed, so that it is whole or not there. OBJ, OFF, npz, FreeSurfer and tables need numpy
-alone; the other formats need an extra, which the error names: `authalic[io]` (PLY, STL, GLB, glTF, VTK, VTU)
+its place and renamed, so that it is whole or not there. OBJ, PLY, OFF, npz, FreeSurfer and tables need numpy
+alone; the other formats need an extra, which the error names: `authalic[io]` (STL, GLB, glTF, VTK, VTU)
 or `authalic[neuro]` (GIFTI).
 
 >>> import authalic.io, tempfile, pathlib

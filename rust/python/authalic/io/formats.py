@@ -36,7 +36,7 @@ class Format(NamedTuple):
 
 MESH_FORMATS = (
     Format("obj", (".obj",), "obj", "corner", bytes_per_vertex=100),
-    Format("ply", (".ply",), "meshio_formats", "vertex", bytes_per_vertex=50),
+    Format("ply", (".ply",), "ply", "vertex", bytes_per_vertex=50),
     Format("stl", (".stl",), "trimesh_formats", None, "float32", bytes_per_vertex=100),
     Format("off", (".off",), "off"),
     Format("glb", (".glb",), "trimesh_formats", "vertex", "float32", bytes_per_vertex=40),

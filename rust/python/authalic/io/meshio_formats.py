@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""PLY and VTU by meshio, which keeps double precision and the order of polygons."""
+"""VTU and VTK by meshio, which keeps double precision and the order of polygons."""
 
 import importlib
 from pathlib import Path
@@ -27,8 +27,7 @@ def read_mesh(path: Path, name: str) -> MeshData:
 def write_mesh(path: Path, mesh: MeshData, name: str) -> None:
     meshio = require("meshio", name.upper(), "io")
     columns = {} if mesh.uv is None else {"s": mesh.uv[:, 0].copy(), "t": mesh.uv[:, 1].copy()}
-    # PLY has no 64-bit integers
-    cells = [("triangle", mesh.faces.astype(np.int32))]
+    cells = [("triangle", mesh.faces)]
     _module(name).write(str(path), meshio.Mesh(mesh.vertices, cells, point_data=columns))
 
 

@@ -15,14 +15,14 @@ def read_mesh(path: Path, name: str) -> MeshData:
     head = re.match(r"\s*(?:ST)?C?N?OFF\b(?! *BINARY)", text)
     if head is None:
         raise ValueError("it does not begin with the word OFF of an ASCII file")
-    if not head[0].strip() == "OFF":
-        raise ValueError(f"{head[0].strip()} files are not read, only OFF")
     words = text[head.end() :].split()
     lines = [line.split() for line in text[head.end() :].splitlines() if line.strip()]
     n, m = int(words[0]), int(words[1])
     if len(lines) == 1 + n + m:
         points = [line[:3] for line in lines[1 : 1 + n]]
         polygons = [list(map(int, line[1 : 1 + int(line[0])])) for line in lines[1 + n :]]
+    elif head[0].strip() != "OFF":
+        raise ValueError(f"a {head[0].strip()} file must have one element a line")
     else:  # not one element a line: then there are no colors
         points = np.array(words[3 : 3 + 3 * n]).reshape(n, 3).tolist()
         polygons = _polygons(words[3 + 3 * n :], m)

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""PLY, in ASCII and binary, with UVs at vertices (s, t) or at corners (texcoord).
+
+meshio misreads binary faces with further properties, and trimesh puts triangles before other polygons; so
+this reader is our own.
+"""
+
+import struct
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .mesh import Indices, MeshData, Reals, fans
+
+_TYPES = {
+    **{"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4"},
+    **{"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4"},
+    **{"float32": "f4", "float64": "f8", "double": "f8"},
+}
+_STRUCT = {"i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "f4": "f", "f8": "d"}
+_ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">", "ascii": ""}
+_UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"), ("texture_s", "texture_t"))
+_CORNERS = ("vertex_indices", "vertex_index")
+
+
+class _Property(NamedTuple):
+    """A column; a list has the type of its length too."""
+
+    name: str
+    kind: str
+    length: str | None
+
+
+class _Element(NamedTuple):
+    name: str
+    rows: int
+    properties: list[_Property]
+
+
+def read_mesh(path: Path, name: str) -> MeshData:
+    """Elements in the order of the file; those other than vertices and faces are passed over."""
+    content = path.read_bytes()
+    order, elements, place = _header(content)
+    source = _Binary(content, place, order) if order else _Text(content[place:].split())
+    tables = {element.name: source.table(element) for element in elements}
+    vertex, face = tables.get("vertex", {}), tables.get("face", {})
+    corners = next((face[key] for key in _CORNERS if key in face), None)
+    if corners is None or not {"x", "y", "z"} <= vertex.keys():
+        raise ValueError("it lacks the coordinates x, y, z or the faces' vertex_indices")
+    points = np.column_stack([vertex[key] for key in "xyz"]).astype(np.float64)
+    faces = _triangles(corners)
+    return MeshData(points, faces, *_uv(vertex, face.get("texcoord"), faces))
+
+
+def write_mesh(path: Path, mesh: MeshData, name: str) -> None:
+    """Little-endian, with double precision."""
+    columns = [mesh.vertices] if mesh.uv is None else [mesh.vertices, mesh.uv]
+    names = "xyz" if mesh.uv is None else "xyzst"
+    lines = [
+        "ply",
+        "format binary_little_endian 1.0",
+        "comment authalic",
+        f"element vertex {len(mesh.vertices)}",
+    ]
+    lines += [f"property double {name}" for name in names]
+    lines += [f"element face {len(mesh.faces)}", "property list uchar int vertex_indices", "end_header", ""]
+    faces = np.empty(len(mesh.faces), [("count", "u1"), ("corners", "<i4", 3)])
+    faces["count"], faces["corners"] = 3, mesh.faces
+    path.write_bytes("\n".join(lines).encode() + np.hstack(columns).astype("<f8").tobytes() + faces.tobytes())
+
+
+def _header(content: bytes) -> tuple[str, list[_Element], int]:
+    """The byte order ("" for ASCII), the elements, and where the data begin."""
+    end = content.find(b"end_header")
+    if not content.startswith(b"ply") or end < 0:
+        raise ValueError("it does not begin with a header from ply to end_header")
+    order, elements = None, []
+    for line in content[:end].decode("ascii", "replace").splitlines():
+        words = line.split()
+        if words[:1] == ["format"]:
+            order = _ORDERS.get(words[1])
+        elif words[:1] == ["element"]:
+            elements.append(_Element(words[1], int(words[2]), []))
+        elif words[:2] == ["property", "list"]:
+            elements[-1].properties.append(_Property(words[4], _TYPES[words[3]], _TYPES[words[2]]))
+        elif words[:1] == ["property"]:
+            elements[-1].properties.append(_Property(words[2], _TYPES[words[1]], None))
+    if order is None:
+        raise ValueError("its header names no known format")
+    return order, elements, content.index(b"\n", end) + 1
+
+
+class _Text:
+    """Reads the words of an ASCII file."""
+
+    def __init__(self, words: list[bytes]) -> None:
+        self.words, self.place = words, 0
+
+    def table(self, element: _Element) -> dict[str, Any]:
+        width = len(element.properties)
+        if not any(column.length for column in element.properties):
+            rows = np.array(self._take(element.rows * width), np.float64).reshape(-1, width)
+            return {column.name: rows[:, k] for k, column in enumerate(element.properties)}
+        table: dict[str, Any] = {column.name: [] for column in element.properties}
+        for _ in range(element.rows):
+            for column in element.properties:
+                count = int(self._take(1)[0]) if column.length else 1
+                numbers = [float(word) for word in self._take(count)]
+                table[column.name].append(numbers if column.length else numbers[0])
+        return table
+
+    def _take(self, count: int) -> list[bytes]:
+        words = self.words[self.place : self.place + count]
+        if len(words) < count:
+            raise ValueError("the file ends early")
+        self.place += count
+        return words
+
+
+class _Binary:
+    """Reads rows of a binary file: all at once where lists have one length, else one after the other."""
+
+    def __init__(self, content: bytes, place: int, order: str) -> None:
+        self.content, self.place, self.order = content, place, order
+
+    def table(self, element: _Element) -> dict[str, Any]:
+        if element.rows == 0:
+            return {column.name: [] for column in element.properties}
+        start = self.place
+        lengths = [len(value) if column.length else 0 for column, value in self._row(element)]
+        self.place = start
+        fields: list[Any] = []
+        for column, length in zip(element.properties, lengths, strict=True):
+            fields += [(f"count of {column.name}", self.order + column.length)] if column.length else []
+            shape = (length,) if column.length else ()
+            fields.append((column.name, self.order + column.kind, shape))
+        dtype = np.dtype(fields)
+        if start + element.rows * dtype.itemsize <= len(self.content):
+            rows = np.frombuffer(self.content, dtype, element.rows, start)
+            counted = zip(element.properties, lengths, strict=True)
+            if all((rows[f"count of {column.name}"] == n).all() for column, n in counted if column.length):
+                self.place = start + element.rows * dtype.itemsize
+                return {column.name: rows[column.name] for column in element.properties}
+        table: dict[str, Any] = {column.name: [] for column in element.properties}
+        for _ in range(element.rows):
+            for column, value in self._row(element):
+                table[column.name].append(value)
+        return table
+
+    def _row(self, element: _Element) -> list[tuple[_Property, Any]]:
+        row: list[tuple[_Property, Any]] = []
+        for column in element.properties:
+            count = self._unpack(column.length, 1)[0] if column.length else 1
+            numbers = self._unpack(column.kind, count)
+            row.append((column, numbers if column.length else numbers[0]))
+        return row
+
+    def _unpack(self, kind: str, count: int) -> list[Any]:
+        pattern = struct.Struct(f"{self.order}{count}{_STRUCT[kind]}")
+        numbers = pattern.unpack_from(self.content, self.place)
+        self.place += pattern.size
+        return list(numbers)
+
+
+def _triangles(corners: Any) -> Indices:
+    if isinstance(corners, np.ndarray) and corners.shape[1] == 3:
+        return corners.astype(np.int64)
+    return fans([[int(corner) for corner in polygon] for polygon in corners])
+
+
+def _uv(vertex: dict[str, Any], texcoord: Any, faces: Indices) -> tuple[Reals | None, Indices | None]:
+    """Points at vertices, or six numbers for each triangle."""
+    for first, second in _UV_NAMES:
+        if first in vertex and second in vertex:
+            return np.column_stack([vertex[first], vertex[second]]).astype(np.float64), None
+    if texcoord is None or len(texcoord) != len(faces) or any(len(row) != 6 for row in texcoord):
+        return None, None
+    points = np.asarray(texcoord, np.float64).reshape(-1, 2)
+    return points, np.arange(len(points)).reshape(-1, 3)

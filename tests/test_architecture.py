@@ -17,6 +17,7 @@ ADDON = ROOT / "addon"
 CORE_ROOMS = (
     {"vector", "error", "control", "parallel", "sets"},
     {"arrays"},
+    {"record"},
     {"mesh", "options"},
     {"sparse", "distortion", "codomain", "location", "packing"},
     {"energy", "embedding", "alignment", "filling"},
@@ -24,7 +25,7 @@ CORE_ROOMS = (
     {"disk", "sphere", "untangle"},
     {"layout", "seams"},
     {"unwrap"},
-    {"registration"},
+    {"registration", "resampling"},
     {"hyperbolic"},
     {"testing"},
 )
@@ -36,7 +37,7 @@ HYPERBOLIC_ROOMS = (
     {"harmonic"},
     {"between", "warnings"},
     {"assembly"},
-    {"filling"},
+    {"filling", "record"},
     {"register", "structure"},
 )
 

@@ -28,6 +28,7 @@ NAMES = {
     "Registration",
     "RegistrationWarning",
     "Repaired",
+    "Result",
     "Seams",
     "SolverError",
     "SphereMap",
@@ -43,6 +44,7 @@ NAMES = {
     "distortions",
     "homotopy",
     "hyperbolic_structure",
+    "load",
     "pack",
     "register_disks",
     "register_hyperbolic",
@@ -162,6 +164,7 @@ KEYWORDS = {
     },
     "hyperbolic_structure": {"curves": inspect.Parameter.empty, "metric": "newton", "progress": None},
     "homotopy": {"align": False},
+    "load": {},
 }
 POSITIONAL = {
     "disk_map": ["vertices", "faces"],
@@ -181,6 +184,7 @@ POSITIONAL = {
     "register_hyperbolic": ["source", "target"],
     "hyperbolic_structure": ["vertices", "faces"],
     "homotopy": ["vertices", "registration", "t"],
+    "load": ["path"],
 }
 FUNCTIONS = sorted(KEYWORDS)
 DISK_METHODS = '"gauss_newton", "conjugate_gradient" or "fixed_point"'
@@ -202,8 +206,14 @@ def any_result(request):
     return request.getfixturevalue(request.param)
 
 
+OF_ALL_RESULTS = {"provenance", "save"}
+
+
 def public_attributes(value):
-    return {name for name in dir(value) if not name.startswith("_")}
+    """Those of its class alone, not of all results."""
+    names = {name for name in dir(value) if not name.startswith("_")}
+    assert names >= OF_ALL_RESULTS
+    return names - OF_ALL_RESULTS
 
 
 def test_the_package_tested_is_the_installed_one():
@@ -252,6 +262,7 @@ def test_a_keyword_given_by_position_is_refused(name):
         "Patch",
         "Refinement",
         "Registration",
+        "Result",
         "Certificates",
         "HyperbolicStructure",
         "Untangled",
@@ -273,6 +284,12 @@ def test_the_docstrings_have_all_sections_and_name_all_parameters(name):
         assert f"\n{parameter} : " in text
 
 
+def test_all_results_have_one_base_class():
+    for name in NAMES - {"Result", "MeshError", "SolverError", "RegistrationWarning"}:
+        if isinstance(getattr(authalic, name), type):
+            assert issubclass(getattr(authalic, name), authalic.Result)
+
+
 def test_every_attribute_of_the_results_is_documented():
     maps = (authalic.DiskMap, authalic.SphereMap, authalic.Registration, authalic.HyperbolicStructure)
     for kind in (
@@ -287,7 +304,7 @@ def test_every_attribute_of_the_results_is_documented():
         authalic.Certificates,
         authalic.Pants,
     ):
-        for name in public_attributes(kind):
+        for name in public_attributes(kind) | OF_ALL_RESULTS:
             assert getattr(kind, name).__doc__, f"{kind.__name__}.{name}"
 
 
@@ -303,7 +320,8 @@ def test_a_map_has_the_attributes_of_the_contract(any_result):
         type(any_result)
     ]
     assert public_attributes(any_result) == {
-        *(*special, "faces", "status", "iterations", "history", "distortion", "repaired", "seconds")
+        *(*special, "faces", "status", "iterations", "history", "distortion", "repaired", "seconds"),
+        *("locate", "image_of", "sample"),
     }
     assert isinstance(any_result.distortion, authalic.Distortion)
     assert any_result.status in {"converged", "max_iterations", "stalled", "cancelled"}
@@ -351,7 +369,7 @@ def assert_array(array, shape, dtype):
     assert array.dtype == dtype
     assert array.flags.c_contiguous
     assert array.flags.owndata or array.base is not None
-    assert array.flags.writeable
+    assert not array.flags.writeable
 
 
 def test_arrays_of_maps_are_c_ordered_float64_and_int64(result):

@@ -113,7 +113,7 @@ def test_a_layout_has_the_attributes_of_the_contract(precision):
     mesh = meshes.bumpy_ball()
     layout = authalic.sphere_map(*mesh).layout(precision=precision)
     names = {name for name in dir(layout) if not name.startswith("_")}
-    assert names == {"points", "faces", "vertex_of", "status", "seconds"}
+    assert names == {"points", "faces", "vertex_of", "status", "seconds", "provenance", "save"}
     assert all(getattr(authalic.Layout, name).__doc__ for name in names)
     assert (layout.points.dtype, layout.points.shape[1:]) == (np.dtype(precision), (2,))
     assert (layout.faces.dtype, layout.faces.shape) == (np.int64, mesh.faces.shape)
@@ -688,15 +688,6 @@ def test_an_option_of_the_wrong_type_is_a_type_error(options):
         map_of(meshes.ball(2)).layout(**options)
 
 
-def test_a_layout_is_that_of_the_map_whatever_is_written_to_its_arrays():
-    sphere_map = map_of(meshes.ball(2))
-    before = sphere_map.layout()
-    sphere_map.positions[5, 1] = np.nan
-    sphere_map.faces[7, 1] = 1000
-    after = sphere_map.layout()
-    assert np.array_equal(after.points, before.points) and np.array_equal(after.faces, before.faces)
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_polygons_that_wind_around_the_sphere_are_refused_by_naming_them(kind):
     mesh = meshes.icosphere(3)
@@ -718,7 +709,9 @@ def test_spoiled_maps_never_crash(kind):
         lambda positions: positions * [1, 1, 1e-12],
     ):
         sphere_map = map_of(meshes.ball(2))
-        sphere_map.positions[:] = spoil(np.array(sphere_map.positions))
+        restore, (name, state, _) = sphere_map.__reduce__()
+        positions = spoil(np.array(sphere_map.positions))
+        sphere_map = restore(name, {**state, "positions": positions}, None)
         try:
             layout = sphere_map.layout(kind)
         except (authalic.SolverError, authalic.MeshError) as problem:

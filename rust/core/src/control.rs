@@ -166,6 +166,13 @@ impl Status {
             Self::LandmarksMissed => "landmarks_missed",
         }
     }
+
+    /// The status of a word.
+    pub fn of_word(word: &str) -> Option<Self> {
+        [Self::Converged, Self::MaxIterations, Self::Stalled, Self::Cancelled, Self::LandmarksMissed]
+            .into_iter()
+            .find(|status| status.as_str() == word)
+    }
 }
 
 /// One line of the [`History`] of a run.
@@ -194,6 +201,11 @@ impl History {
     /// An empty history whose clock starts now.
     pub fn start() -> Self {
         Self { began: Instant::now(), records: Vec::new() }
+    }
+
+    /// The history of an earlier run.
+    pub fn of_records(records: Vec<Record>) -> Self {
+        Self { began: Instant::now(), records }
     }
 
     /// Adds the start map, where no earlier phase of the same run has added its last map already.

@@ -134,8 +134,10 @@ mod optimize;
 mod options;
 mod packing;
 mod parallel;
+mod record;
 mod registration;
 mod repair;
+mod resampling;
 mod seams;
 mod sets;
 mod sparse;
@@ -156,18 +158,20 @@ pub use error::{
 pub use hyperbolic::{
     Certificates, Complex, CoverCopy, CurveMap, CurveRegistration, Descent, FlowOptions, HarmonicSolver,
     HyperbolicEnergy, HyperbolicOptions, HyperbolicStructure, LandmarkCurves, MetricMethod, Moebius, Pants,
-    RoughSphere, Warning, WarningKind, hyperbolic_structure, register_hyperbolic,
+    RoughSphere, Warning, WarningKind, cover, hyperbolic_structure, register_hyperbolic,
 };
 pub use layout::{Layout, LayoutKind, LayoutOptions, Precision, Seam, SphereFaces, layout};
 pub use mesh::{Corner, Face, Patch, Surface, Topology, Vertex};
 pub use optimize::published::gradient_descent::LineSearch;
 pub use packing::{Island as PlanarIsland, Margin, PackOptions, Packing, Place, Rotation, pack};
 pub use parallel::set_threads;
+pub use record::{Entry, Recorded, Tree};
 pub use registration::{
     Correspondence, DiskRegistration, Energy, Features, Landmarks, Registration, RegistrationOptions,
     SphereRegistration, Strain, follow, homotopy, register_disks, register_spheres,
 };
 pub use repair::{CloseHandles, CloseHoles, Keep, RepairCounts, RepairOptions, Repaired, repair};
+pub use resampling::{InverseMap, Outside, PerElement, Places, RefinedFaces};
 pub use seams::{SeamMethod, SeamOptions, Seams, Symmetry, seams};
 pub use sphere::{Refinement, SphereMap, SphereMapOptions, SphereMethod, sphere_map};
 pub use untangle::{UntangleOptions, Untangled, untangle};

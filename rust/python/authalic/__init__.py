@@ -8,6 +8,7 @@
 (5, 2)
 """
 
+from ._files import load
 from ._native import (
     ERROR_KINDS,
     WARNING_KINDS,
@@ -23,6 +24,7 @@ from ._native import (
     Refinement,
     Registration,
     Repaired,
+    Result,
     Seams,
     SolverError,
     SphereMap,
@@ -68,6 +70,7 @@ __all__ = [
     "Registration",
     "RegistrationWarning",
     "Repaired",
+    "Result",
     "Seams",
     "SolverError",
     "SphereMap",
@@ -83,6 +86,7 @@ __all__ = [
     "distortions",
     "homotopy",
     "hyperbolic_structure",
+    "load",
     "pack",
     "register_disks",
     "register_hyperbolic",

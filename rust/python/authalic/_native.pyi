@@ -2,10 +2,12 @@
 """Types of the native module, whose own docstrings document it."""
 
 from collections.abc import Callable, Iterable, Sequence
+from os import PathLike
 from typing import Any, Literal, Protocol, Self, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import disjoint_base
 
 from ._warnings import RegistrationWarning
 
@@ -24,6 +26,7 @@ __all__ = [
     "Refinement",
     "Registration",
     "Repaired",
+    "Result",
     "Seams",
     "SolverError",
     "SphereMap",
@@ -32,6 +35,8 @@ __all__ = [
     "Untangled",
     "Unwrap",
     "__version__",
+    "_fields",
+    "_restored",
     "cut",
     "disk_map",
     "disk_maps",
@@ -104,8 +109,20 @@ class SolverError(RuntimeError):
     indices: tuple[int, ...] | tuple[tuple[int, ...], ...]
     count: int
 
+@disjoint_base
+class Result:
+    @property
+    def provenance(self) -> dict[str, Any] | None: ...
+    def save(self, path: str | PathLike[str]) -> None: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self, /) -> int: ...
+    def __copy__(self) -> Self: ...
+    def __deepcopy__(self, _memo: object, /) -> Self: ...
+    def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...]]: ...
+    def _repr_html_(self) -> str: ...
+
 @final
-class Surface:
+class Surface(Result):
     def __new__(
         cls, vertices: ArrayLike | _Handle, faces: ArrayLike | None = None, *, flat: bool = False
     ) -> Self: ...
@@ -132,7 +149,7 @@ class Surface:
     def cut(self, *, seams: ArrayLike | None = None) -> list[Patch]: ...
 
 @final
-class Patch:
+class Patch(Result):
     @property
     def surface(self) -> Surface: ...
     @property
@@ -157,7 +174,7 @@ class Patch:
     def is_closed(self) -> bool: ...
 
 @final
-class Repaired:
+class Repaired(Result):
     @property
     def surface(self) -> Surface: ...
     @property
@@ -180,7 +197,7 @@ class Repaired:
     def is_changed(self) -> bool: ...
 
 @final
-class Distortion:
+class Distortion(Result):
     @property
     def authalic_energy(self) -> float: ...
     @property
@@ -201,7 +218,7 @@ class Distortion:
     def angle_distortion_max(self) -> float: ...
 
 @final
-class DiskMap:
+class DiskMap(Result):
     @property
     def uv(self) -> _Reals: ...
     @property
@@ -218,9 +235,22 @@ class DiskMap:
     def repaired(self) -> Repaired | None: ...
     @property
     def seconds(self) -> float: ...
+    def locate(
+        self, points: ArrayLike, *, outside: Literal["nearest"] | None = None
+    ) -> tuple[_Indices, _Reals]: ...
+    def image_of(self, triangles: ArrayLike, barycentric: ArrayLike) -> _Reals: ...
+    def sample(
+        self,
+        values: ArrayLike,
+        points: ArrayLike,
+        *,
+        per: Literal["vertex", "face"] | None = None,
+        nearest: bool = False,
+        outside: Literal["nearest"] | complex | None = None,
+    ) -> NDArray[Any]: ...
 
 @final
-class Refinement:
+class Refinement(Result):
     @property
     def parents(self) -> _Indices: ...
     @property
@@ -235,7 +265,7 @@ class Refinement:
     def distortion(self) -> Distortion: ...
 
 @final
-class SphereMap:
+class SphereMap(Result):
     @property
     def positions(self) -> _Reals: ...
     @property
@@ -254,6 +284,16 @@ class SphereMap:
     def repaired(self) -> Repaired | None: ...
     @property
     def seconds(self) -> float: ...
+    def locate(self, points: ArrayLike) -> tuple[_Indices, _Reals]: ...
+    def image_of(self, triangles: ArrayLike, barycentric: ArrayLike) -> _Reals: ...
+    def sample(
+        self,
+        values: ArrayLike,
+        points: ArrayLike,
+        *,
+        per: Literal["vertex", "face"] | None = None,
+        nearest: bool = False,
+    ) -> NDArray[Any]: ...
     def layout(
         self,
         kind: Literal["lambert", "octahedral"] = "lambert",
@@ -268,7 +308,7 @@ class SphereMap:
     ) -> Layout: ...
 
 @final
-class Layout:
+class Layout(Result):
     @property
     def points(self) -> NDArray[np.float64] | NDArray[np.float32]: ...
     @property
@@ -281,7 +321,7 @@ class Layout:
     def seconds(self) -> float: ...
 
 @final
-class Untangled:
+class Untangled(Result):
     @property
     def image(self) -> _Reals: ...
     @property
@@ -296,7 +336,7 @@ class Untangled:
     def seconds(self) -> float: ...
 
 @final
-class Seams:
+class Seams(Result):
     @property
     def edges(self) -> _Indices: ...
     @property
@@ -313,7 +353,7 @@ class Seams:
     def seconds(self) -> float: ...
 
 @final
-class Unwrap:
+class Unwrap(Result):
     @property
     def uv(self) -> _Reals: ...
     @property
@@ -342,7 +382,7 @@ class Unwrap:
     def seconds(self) -> float: ...
 
 @final
-class Packing:
+class Packing(Result):
     @property
     def uv(self) -> _Reals: ...
     @property
@@ -353,7 +393,7 @@ class Packing:
     def seconds(self) -> float: ...
 
 @final
-class Registration:
+class Registration(Result):
     @property
     def positions(self) -> _Reals: ...
     @property
@@ -420,7 +460,7 @@ class Registration:
     def compare(self, source_values: ArrayLike, target_values: ArrayLike) -> tuple[float, float]: ...
 
 @final
-class Strain:
+class Strain(Result):
     @property
     def sigma(self) -> _Reals: ...
     @property
@@ -437,7 +477,7 @@ class Strain:
     def worst_landmark(self) -> int | None: ...
 
 @final
-class Certificates:
+class Certificates(Result):
     @property
     def folded(self) -> _Indices: ...
     @property
@@ -460,7 +500,7 @@ class Certificates:
     def curvature(self) -> tuple[float, float]: ...
 
 @final
-class Pants:
+class Pants(Result):
     @property
     def boundary_lengths(self) -> _Reals: ...
     @property
@@ -471,7 +511,7 @@ class Pants:
     def placement(self) -> _Complex: ...
 
 @final
-class HyperbolicStructure:
+class HyperbolicStructure(Result):
     @property
     def vertices(self) -> _Reals: ...
     @property
@@ -614,6 +654,8 @@ def seams(
     method: Literal["search", "cones"] = "search",
     progress: _Progress | None = None,
 ) -> Seams: ...
+def _fields(kind: str) -> tuple[str, ...]: ...
+def _restored(kind: str, state: dict[str, Any], provenance: dict[str, Any] | None) -> Any: ...
 def set_threads(count: int) -> None: ...
 def unwrap(
     surface: _Surface,

@@ -40,9 +40,20 @@ pub fn reals(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Array1<f64>> {
     })
 }
 
-/// An array for Python, without a copy.
+/// An array of a result, without a copy. Python cannot write to it.
 pub fn from_array<T: Element, D: Dimension>(py: Python<'_>, array: Array<T, D>) -> Py<PyArray<T, D>> {
+    frozen(array.into_pyarray(py))
+}
+
+/// An array that is the caller's own, without a copy.
+pub fn own_array<T: Element, D: Dimension>(py: Python<'_>, array: Array<T, D>) -> Py<PyArray<T, D>> {
     array.into_pyarray(py).unbind()
+}
+
+/// An array that Python cannot write to.
+pub fn frozen<T: Element, D: Dimension>(array: Bound<'_, PyArray<T, D>>) -> Py<PyArray<T, D>> {
+    array.readwrite().make_nonwriteable();
+    array.unbind()
 }
 
 /// Any object as an array. Masked values are refused, which would come out from behind their mask.

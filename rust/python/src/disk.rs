@@ -1,23 +1,28 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::disk_map`.
 
-use authalic::{Boundary, DiskMapOptions, DiskMethod, Error, Record, RepairOptions};
-use numpy::PyArray2;
+use std::sync::Arc;
+
+use authalic::{Boundary, DiskMapOptions, DiskMethod, Error, InverseMap, Record, RepairOptions};
 use numpy::ndarray::ArrayView2;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
 use crate::arrays::{Reals, from_array, real_table, reals, reals_of_each};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, to_python};
-use crate::indices::{from_indices, index_list};
+use crate::indices::{from_indices, index_list, narrowed};
+use crate::lookup::{Beyond, Invertible, Lookup, Request, image_of, locate};
 use crate::options::{history, parse_iterations};
+use crate::provenance::{Call, Origin, fingerprint, options};
 use crate::repair::{Prepared, Repaired, check_no_start};
+use crate::result::{Restorable, ResultBase, State, made};
 use crate::run::run;
 use crate::surface::{Given, oriented};
 
 /// A map of a disk to the unit disk or onto a rectangle, one-to-one but for `overlap`.
-#[pyclass(frozen, module = "authalic")]
+#[pyclass(frozen, extends = ResultBase, module = "authalic")]
 pub struct DiskMap {
     /// (n, 2) float64: the image of each vertex in the unit disk, or on the rectangle asked for.
     #[pyo3(get)]
@@ -42,26 +47,191 @@ pub struct DiskMap {
     seconds: f64,
     records: Vec<Record>,
     history: PyOnceLock<Py<PyAny>>,
+    inverse: Lookup,
 }
 
 impl DiskMap {
-    pub fn new(py: Python<'_>, map: authalic::DiskMap, faces: ArrayView2<'_, u32>) -> PyResult<Self> {
-        Ok(Self {
+    pub fn new(
+        py: Python<'_>,
+        map: authalic::DiskMap,
+        faces: ArrayView2<'_, u32>,
+        repaired: Option<Py<Repaired>>,
+        call: Option<Call>,
+    ) -> PyResult<Py<Self>> {
+        let map = Self {
             uv: from_array(py, map.uv),
             faces: from_indices(py, faces),
             status: map.status.as_str(),
             iterations: map.history.iterations(),
             records: map.history.records().to_vec(),
             history: PyOnceLock::new(),
-            distortion: Py::new(py, Distortion::new(py, map.distortion))?,
-            repaired: None,
+            distortion: Distortion::new(py, map.distortion)?,
+            repaired,
             seconds: map.seconds,
+            inverse: Lookup::default(),
+        };
+        made(py, map, call.map(Origin::Call))
+    }
+}
+
+impl Restorable for DiskMap {
+    const FIELDS: &'static [&'static str] =
+        &["uv", "faces", "status", "iterations", "history", "distortion", "repaired", "seconds"];
+
+    fn restored(state: &State<'_>) -> PyResult<Self> {
+        let history = PyOnceLock::new();
+        history.set(state.py(), state.get("history")?).expect("it is empty");
+        Ok(Self {
+            uv: state.get("uv")?,
+            faces: state.get("faces")?,
+            status: state.status()?,
+            iterations: state.get("iterations")?,
+            distortion: state.get("distortion")?,
+            repaired: state.get("repaired")?,
+            seconds: state.get("seconds")?,
+            records: Vec::new(),
+            history,
+            inverse: Lookup::default(),
+        })
+    }
+}
+
+impl Invertible for DiskMap {
+    fn inverse(&self, py: Python<'_>) -> PyResult<Arc<InverseMap>> {
+        self.inverse.get(py, || {
+            let (uv, faces) = (self.uv.bind(py).readonly(), narrowed(self.faces.bind(py)));
+            InverseMap::of_disk(uv.as_array(), faces.view())
         })
     }
 }
 
 #[pymethods]
 impl DiskMap {
+    /// Find the places on the surface whose images are given points.
+    ///
+    /// Parameters
+    /// ----------
+    /// points : (k, 2) real array
+    ///     Points of the disk, or of the rectangle or outline.
+    /// outside : "nearest", optional
+    ///     Points outside the image, as beyond its boundary edges or in a hole, take the nearest place on its boundary.
+    ///     By default they have none. Points within 1e-12 count as on it.
+    ///
+    /// Returns
+    /// -------
+    /// triangles : (k,) int64 array
+    ///     The face of each place, of the lowest index where several share the point; -1 where there is none.
+    /// barycentric : (k, 3) float64 array
+    ///     The weights of the corners of that face in `faces`, not negative, with sum 1; NaN where there is none.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     The points have another shape, or are not finite.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]]
+    /// >>> disk = authalic.disk_map(*square)
+    /// >>> triangles, barycentric = disk.locate([[0, 0], [2, 0]])
+    /// >>> triangles.tolist(), barycentric[0].round(3).tolist()
+    /// ([0, -1], [0.5, 0.0, 0.5])
+    #[pyo3(signature = (points, *, outside=None))]
+    fn locate(
+        &self,
+        py: Python<'_>,
+        points: &Bound<'_, PyAny>,
+        outside: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<(Py<PyArray1<i64>>, Py<PyArray2<f64>>)> {
+        locate(py, self.inverse(py)?, real_table::<2>(points, "points")?, Beyond::new(outside)?.outside)
+    }
+
+    /// Map places on the surface: the inverse of `locate`.
+    ///
+    /// Parameters
+    /// ----------
+    /// triangles : (k,) integer array
+    ///     Faces; -1 for no place.
+    /// barycentric : (k, 3) real array
+    ///     The weights of their corners.
+    ///
+    /// Returns
+    /// -------
+    /// (k, 2) float64 array
+    ///     NaN where there is no place.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     An array has another shape, or a face is out of range.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]]
+    /// >>> disk = authalic.disk_map(*square)
+    /// >>> disk.image_of([0], [[0.5, 0, 0.5]]).shape
+    /// (1, 2)
+    fn image_of(
+        &self,
+        py: Python<'_>,
+        triangles: &Bound<'_, PyAny>,
+        barycentric: &Bound<'_, PyAny>,
+    ) -> PyResult<Reals> {
+        image_of(py, self.inverse(py)?, triangles, barycentric)
+    }
+
+    /// Carry values of the surface to points of its image.
+    ///
+    /// Parameters
+    /// ----------
+    /// values : (n, ...) or (m, ...) array
+    ///     One row per vertex, interpolated linearly on each face, or one per face.
+    /// points : (k, 2) real array
+    ///     Points of the disk, or of the rectangle or outline.
+    /// per : "vertex" or "face", optional
+    ///     The elements that `values` has a row for. Default: as its length says, vertices if both fit.
+    /// nearest : bool
+    ///     Take the value of the corner with the largest weight, of any dtype, instead of interpolating: for labels.
+    /// outside : "nearest" or number
+    ///     Points outside the image take the value of the nearest place on its boundary, or this number. Default NaN,
+    ///     or 0 for values of a dtype without NaN.
+    ///
+    /// Returns
+    /// -------
+    /// (k, ...) array
+    ///     float64; with `nearest`, the dtype of `values`.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     The points or values have another shape, or without `nearest` are no real numbers.
+    /// ValueError
+    ///     An option is none of those above.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]]
+    /// >>> disk = authalic.disk_map(*square)
+    /// >>> disk.sample(square[0], [[0, 0], [2, 0]]).round(3).tolist()
+    /// [[0.5, 0.5, 0.0], [nan, nan, nan]]
+    #[pyo3(signature = (values, points, *, per=None, nearest=false, outside=None))]
+    fn sample(
+        &self,
+        py: Python<'_>,
+        values: &Bound<'_, PyAny>,
+        points: &Bound<'_, PyAny>,
+        per: Option<&str>,
+        nearest: bool,
+        outside: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Py<PyAny>> {
+        let points = real_table::<2>(points, "points")?;
+        let request = Request { values, per, nearest, beyond: Beyond::new(outside)? };
+        request.at(py, self.inverse(py)?, points)
+    }
+
     /// One record per iteration, the start first, as a structured array.
     ///
     /// Its fields are iteration, authalic_energy, step, gradient_norm, seconds. gradient_norm is √(gᵀM⁻¹g), the norm
@@ -194,8 +364,12 @@ pub fn disk_map(
     aspect: Option<f64>,
     repair: bool,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<DiskMap> {
+) -> PyResult<Py<DiskMap>> {
     // 1. Arguments to plain data
+    let kept = options!(
+        py; method, boundary, density, angle_weight, area_tolerance, initial, max_iterations, tolerance, fill_holes,
+        overlap, corners, aspect, repair
+    )?;
     let (method, boundary) = (parse_method(method)?, parse_boundary(boundary)?);
     let max_iterations = max_iterations.map(parse_iterations).transpose()?;
     let given = Given::new(vertices, faces)?;
@@ -205,7 +379,8 @@ pub fn disk_map(
     let initial = initial.map(|initial| real_table::<2>(initial, "initial")).transpose()?;
     let corners = corners.map(|corners| parse_corners(corners, given.n_vertices())).transpose()?;
     // 2. The run
-    let (map, prepared) = run(py, progress, move |observer| {
+    let (map, prepared, input) = run(py, progress, move |observer| {
+        let input = given.fingerprint();
         let prepared = Prepared::new(given, density, repair.as_ref())?;
         let density = prepared.density.as_ref().map(|density| density.view());
         let corners = corners.map(|corners| prepared.vertices("corners", corners)).transpose()?;
@@ -224,12 +399,13 @@ pub fn disk_map(
             corners,
             aspect,
         };
-        Ok((authalic::disk_map(&prepared.surface, &options, observer)?, prepared))
+        Ok((authalic::disk_map(&prepared.surface, &options, observer)?, prepared, input))
     })?;
     // 3. The result
     let Prepared { surface, repaired, .. } = prepared;
-    let repaired = repaired.map(|repaired| Py::new(py, Repaired::new(py, repaired)?)).transpose()?;
-    Ok(DiskMap { repaired, ..DiskMap::new(py, map, oriented(&surface).view())? })
+    let repaired = repaired.map(|repaired| Repaired::new(py, repaired, None)).transpose()?;
+    let call = Call::new("disk_map", &kept, "surface", input);
+    DiskMap::new(py, map, oriented(&surface).view(), repaired, Some(call))
 }
 
 /// Maps many disks in one go, which is much faster than one by one where they are small.
@@ -300,6 +476,9 @@ pub fn disk_maps(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Vec<Option<Py<PyAny>>>> {
     // 1. Arguments to plain data
+    let kept = options!(
+        py; method, boundary, angle_weight, area_tolerance, max_iterations, tolerance, fill_holes, overlap
+    )?;
     let (method, boundary) = (parse_method(method)?, parse_boundary(boundary)?);
     let max_iterations = max_iterations.map(parse_iterations).transpose()?;
     let names = ["surfaces", "vertices", "faces"];
@@ -330,8 +509,8 @@ pub fn disk_maps(
     let results = maps.into_iter().zip(&surfaces).map(|(map, surface)| match map {
         None => Ok(None),
         Some(Ok(map)) => {
-            let map = DiskMap::new(py, map, oriented(surface).view())?;
-            Ok(Some(Py::new(py, map)?.into_any()))
+            let call = Call::new("disk_maps", &kept, "surface", fingerprint(surface));
+            Ok(Some(DiskMap::new(py, map, oriented(surface).view(), None, Some(call))?.into_any()))
         }
         Some(Err(error @ Error::InvalidOption { .. })) => Err(to_python(py, &error)),
         Some(Err(error)) => Ok(Some(to_python(py, &error).into_value(py).into_any())),

@@ -8,11 +8,12 @@ use pyo3::prelude::*;
 use crate::arrays::{self, from_array, reals, reals_of_each};
 use crate::errors::{bad_array, to_python};
 use crate::indices::from_index_list;
+use crate::result::{ResultBase, made, restorable};
 use crate::run::run;
 use crate::surface::Given;
 
 /// The quality figures of a map. All are signed: a folded face never scores like a good one.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, get_all, extends = ResultBase, module = "authalic")]
 pub struct Distortion {
     /// E_A = Σ (a − |τ|)²/|τ| on targets rescaled to the image's area; 0 for an area-preserving map.
     authalic_energy: f64,
@@ -35,8 +36,8 @@ pub struct Distortion {
 }
 
 impl Distortion {
-    pub fn new(py: Python<'_>, figures: authalic::Distortion) -> Self {
-        Self {
+    pub fn new(py: Python<'_>, figures: authalic::Distortion) -> PyResult<Py<Self>> {
+        let figures = Self {
             authalic_energy: figures.authalic_energy,
             area_ratio_mean: figures.area_ratio_mean,
             area_ratio_std: figures.area_ratio_std,
@@ -46,9 +47,22 @@ impl Distortion {
             angle_distortion_mean: figures.angle_distortion_mean,
             angle_distortion_p99: figures.angle_distortion_p99,
             angle_distortion_max: figures.angle_distortion_max,
-        }
+        };
+        made(py, figures, None)
     }
 }
+
+restorable!(Distortion {
+    authalic_energy,
+    area_ratio_mean,
+    area_ratio_std,
+    log2_area_ratio,
+    folded,
+    angle_distortion,
+    angle_distortion_mean,
+    angle_distortion_p99,
+    angle_distortion_max
+});
 
 #[pymethods]
 impl Distortion {
@@ -103,14 +117,14 @@ pub fn distortion(
     faces: Option<&Bound<'_, PyAny>>,
     image: Option<&Bound<'_, PyAny>>,
     density: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Distortion> {
+) -> PyResult<Py<Distortion>> {
     let (given, map) = Given::with_image(vertices, faces, image)?;
     let map = arrays::image(map)?;
     let density = density.map(|density| reals(density, "density")).transpose()?;
     let figures = run(py, None, move |_| {
         authalic::distortion(&given.surface()?, map.view(), density.as_ref().map(|density| density.view()))
     })?;
-    Ok(Distortion::new(py, figures))
+    Distortion::new(py, figures)
 }
 
 /// Measures many maps in one go, which is much faster than one by one where they are small.
@@ -169,7 +183,7 @@ pub fn distortions(
         Ok(authalic::distortions(&maps))
     })?;
     let results = figures.into_iter().map(|figures| match figures {
-        Ok(figures) => Ok(Py::new(py, Distortion::new(py, figures))?.into_any()),
+        Ok(figures) => Ok(Distortion::new(py, figures)?.into_any()),
         Err(error) => Ok(to_python(py, &error).into_value(py).into_any()),
     });
     results.collect()

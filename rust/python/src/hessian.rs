@@ -5,8 +5,7 @@ use numpy::PyArray1;
 use numpy::ndarray::Array1;
 use pyo3::prelude::*;
 
-use crate::arrays::{from_array, real_table, reals};
-use crate::indices::from_index_list;
+use crate::arrays::{own_array, real_table, reals};
 use crate::run::run;
 use crate::surface::Given;
 
@@ -64,6 +63,6 @@ pub fn stretch_hessian(
         let density = density.as_ref().map(|density| density.view());
         authalic::stretch_hessian(&given.surface()?, image.view(), density)
     })?;
-    let list = |indices: Array1<usize>| from_index_list(py, indices.into_iter());
-    Ok((from_array(py, hessian.data), list(hessian.indices), list(hessian.indptr)))
+    let list = |indices: Array1<usize>| own_array(py, indices.mapv(|index| index as i64));
+    Ok((own_array(py, hessian.data), list(hessian.indices), list(hessian.indptr)))
 }

@@ -3,11 +3,13 @@
 
 use authalic::Elements;
 use numpy::ndarray::{Array2, ArrayView, ArrayView2, Dimension};
-use numpy::{IntoPyArray, PyArray, PyArray1, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{
+    IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods,
+};
 use pyo3::intern;
 use pyo3::prelude::*;
 
-use crate::arrays::{as_array, from_array, kind, shape_words, table};
+use crate::arrays::{as_array, from_array, frozen, kind, shape_words, table};
 use crate::errors::{bad_array, bad_indices};
 
 /// Faces or seams: vertex indices of shape (n, N). Whole reals are accepted.
@@ -57,17 +59,22 @@ pub fn vertex_set(object: &Bound<'_, PyAny>, name: &'static str, n_vertices: usi
     index_list(&indices, name, "entry", n_vertices)
 }
 
-/// Indices as an int64 array.
+/// The faces of a result, which are indices below 2³².
+pub fn narrowed(faces: &Bound<'_, PyArray2<i64>>) -> Array2<u32> {
+    faces.readonly().as_array().mapv(|vertex| vertex as u32)
+}
+
+/// Indices of a result as an int64 array.
 pub fn from_indices<D: Dimension>(py: Python<'_>, indices: ArrayView<'_, u32, D>) -> Py<PyArray<i64, D>> {
     from_array(py, indices.mapv(i64::from))
 }
 
-/// Indices as an (n,) int64 array.
+/// Indices of a result as an (n,) int64 array.
 pub fn from_index_list(
     py: Python<'_>,
     list: impl ExactSizeIterator<Item = impl Into<usize>>,
 ) -> Py<PyArray1<i64>> {
-    PyArray1::from_iter(py, list.map(|index| index.into() as i64)).unbind()
+    frozen(PyArray1::from_iter(py, list.map(|index| index.into() as i64)))
 }
 
 /// Integers of shape (k,) as one column.

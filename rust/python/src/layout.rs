@@ -10,11 +10,12 @@ use pyo3::prelude::*;
 use crate::arrays::{from_array, reals};
 use crate::errors::{bad_array, bad_option};
 use crate::indices::{from_index_list, from_indices, labels, vertex_set};
+use crate::result::{ResultBase, made, restorable};
 use crate::run::run;
 use crate::values::Values;
 
 /// A map onto the sphere laid out in the plane, cut open along a seam, without folds.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, get_all, extends = ResultBase, module = "authalic")]
 pub struct Layout {
     /// (k, 2) float64 or float32, as requested: the points in the order of their vertices.
     ///
@@ -34,6 +35,8 @@ pub struct Layout {
     /// Wall time of the call.
     seconds: f64,
 }
+
+restorable!(Layout { status, points, faces, vertex_of, seconds });
 
 #[pymethods]
 impl Layout {
@@ -61,7 +64,11 @@ pub struct Arguments<'a, 'py> {
 }
 
 /// `SphereMap.layout`.
-pub fn layout(py: Python<'_>, sphere: Arc<SphereFaces>, arguments: &Arguments<'_, '_>) -> PyResult<Layout> {
+pub fn layout(
+    py: Python<'_>,
+    sphere: Arc<SphereFaces>,
+    arguments: &Arguments<'_, '_>,
+) -> PyResult<Py<Layout>> {
     // 1. Arguments to plain data
     let (kind, precision) = (parse_kind(arguments.kind)?, parse_precision(arguments.precision)?);
     let pole = arguments.pole.map_or(Ok([0.0, 0.0, 1.0]), parse_pole)?;
@@ -95,7 +102,7 @@ pub fn layout(py: Python<'_>, sphere: Arc<SphereFaces>, arguments: &Arguments<'_
         authalic::layout(&sphere, &options, observer)
     })?;
     // 3. The result
-    Ok(Layout {
+    let layout = Layout {
         points: match precision {
             Precision::Double => from_array(py, layout.points).into_any(),
             Precision::Single => from_array(py, layout.points.mapv(|x| x as f32)).into_any(),
@@ -104,7 +111,8 @@ pub fn layout(py: Python<'_>, sphere: Arc<SphereFaces>, arguments: &Arguments<'_
         vertex_of: from_index_list(py, layout.vertex_of.iter().map(|vertex| vertex.index())),
         status: layout.status.as_str(),
         seconds: layout.seconds,
-    })
+    };
+    made(py, layout, None)
 }
 
 fn parse_kind(kind: &str) -> PyResult<LayoutKind> {

@@ -14,7 +14,7 @@ pub fn parse_iterations(max_iterations: i64) -> PyResult<usize> {
         .map_err(|_| bad_option(format!("max_iterations must be ≥ 0, but is {max_iterations}")))
 }
 
-/// The history as a numpy structured array.
+/// The history as a numpy structured array, which cannot be written to.
 pub fn history(py: Python<'_>, records: &[Record]) -> PyResult<Py<PyAny>> {
     let fields = ["iteration", "authalic_energy", "step", "gradient_norm", "seconds"];
     let dtype: Vec<(&str, &str)> =
@@ -30,6 +30,7 @@ pub fn history(py: Python<'_>, records: &[Record]) -> PyResult<Py<PyAny>> {
     array.set_item("step", column(|record| record.step))?;
     array.set_item("gradient_norm", column(|record| record.gradient_norm))?;
     array.set_item("seconds", column(|record| record.seconds))?;
+    array.call_method1(intern!(py, "setflags"), (false,))?;
     Ok(array.unbind())
 }
 

@@ -9,14 +9,15 @@ use numpy::ndarray::{Array2, ArrayView2};
 use pyo3::prelude::*;
 use pyo3::{Borrowed, FromPyObject};
 
-use crate::arrays::{Reals, from_array, real_table};
+use crate::arrays::{Reals, from_array, frozen, real_table};
 use crate::errors::{bad_array, bad_option};
 use crate::indices::{index_table, labels};
 use crate::options::choice;
+use crate::result::{ResultBase, made, restorable};
 use crate::run::run;
 
 /// Where the islands of a UV map go in the unit square.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, get_all, extends = ResultBase, module = "authalic")]
 pub struct Packing {
     /// (n, 2) float64: the packed points; points without a face stay where they were.
     uv: Reals,
@@ -27,6 +28,8 @@ pub struct Packing {
     /// Wall time of the call.
     seconds: f64,
 }
+
+restorable!(Packing { uv, scale, angles, seconds });
 
 #[pymethods]
 impl Packing {
@@ -103,7 +106,7 @@ pub fn pack(
     rotate: Turns,
     aspect: f64,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Packing> {
+) -> PyResult<Py<Packing>> {
     // 1. Arguments to plain data
     let began = Instant::now();
     let uv = real_table::<2>(uv, "uv")?;
@@ -121,12 +124,13 @@ pub fn pack(
         Ok((packed(uv, &islands, &packing), packing))
     })?;
     // 3. The result
-    Ok(Packing {
+    let packing = Packing {
         uv: from_array(py, uv),
         scale: packing.scale,
-        angles: PyArray1::from_iter(py, packing.places.iter().map(|place| place.angle)).unbind(),
+        angles: frozen(PyArray1::from_iter(py, packing.places.iter().map(|place| place.angle))),
         seconds: began.elapsed().as_secs_f64(),
-    })
+    };
+    made(py, packing, None)
 }
 
 /// A margin of a length in one of its units.

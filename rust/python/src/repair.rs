@@ -7,15 +7,17 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
 
-use crate::arrays::from_array;
+use crate::arrays::{from_array, frozen};
 use crate::errors::bad_option;
 use crate::indices::from_indices;
 use crate::options::choice;
+use crate::provenance::{Call, Origin, options};
+use crate::result::{ResultBase, made, restorable};
 use crate::run::run;
 use crate::surface::{Given, Surface};
 
 /// A repaired surface, with maps between it and the mesh given. Taken wherever a Surface is.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, get_all, extends = ResultBase, module = "authalic")]
 pub struct Repaired {
     /// The surface, an oriented manifold unless a piece is one-sided.
     surface: Py<Surface>,
@@ -45,10 +47,10 @@ pub struct Repaired {
 
 impl Repaired {
     /// The repaired surface for Python.
-    pub fn new(py: Python<'_>, repaired: authalic::Repaired) -> PyResult<Self> {
+    pub fn new(py: Python<'_>, repaired: authalic::Repaired, origin: Option<Origin>) -> PyResult<Py<Self>> {
         let counts = PyDict::new(py);
         repaired.counts.named().into_iter().try_for_each(|(name, count)| counts.set_item(name, count))?;
-        Ok(Self {
+        let result = Self {
             vertices: from_array(py, repaired.surface.vertices().to_owned()),
             faces: from_indices(py, repaired.surface.faces().view()),
             vertex_of: from_options(py, &repaired.vertex_of),
@@ -58,10 +60,24 @@ impl Repaired {
             counts: counts.unbind(),
             report: repaired.report(),
             is_changed: repaired.is_changed(),
-            surface: Py::new(py, Surface::from(repaired.surface))?,
-        })
+            surface: made(py, Surface::from(repaired.surface), None)?,
+        };
+        made(py, result, origin)
     }
 }
+
+restorable!(Repaired {
+    surface,
+    vertices,
+    faces,
+    vertex_of,
+    face_of,
+    vertex_to,
+    face_to,
+    counts,
+    report,
+    is_changed
+});
 
 #[pymethods]
 impl Repaired {
@@ -78,7 +94,7 @@ impl Repaired {
 /// Indices as int64, -1 where there is none.
 fn from_options<T: Copy + Into<usize>>(py: Python<'_>, list: &[Option<T>]) -> Py<PyArray1<i64>> {
     let number = |index: &Option<T>| index.map_or(-1, |index| index.into() as i64);
-    PyArray1::from_iter(py, list.iter().map(number)).unbind()
+    frozen(PyArray1::from_iter(py, list.iter().map(number)))
 }
 
 /// Makes a mesh a surface that can be mapped: an oriented manifold without faces that have no area.
@@ -151,7 +167,8 @@ pub fn repair(
     keep_outline: bool,
     close_handles: Option<&Bound<'_, PyAny>>,
     keep: &str,
-) -> PyResult<Repaired> {
+) -> PyResult<Py<Repaired>> {
+    let kept = options!(py; merge, close_holes, keep_outline, close_handles, keep)?;
     let options = RepairOptions {
         merge,
         close_holes: close_holes.map(parse_holes).transpose()?.unwrap_or_default(),
@@ -160,8 +177,11 @@ pub fn repair(
         keep: choice("keep", keep, &[("all", Keep::All), ("largest", Keep::Largest)])?,
     };
     let given = Given::new(vertices, faces)?;
-    let repaired = run(py, None, move |_| given.repaired(&options))?;
-    Repaired::new(py, repaired)
+    let (repaired, input) = run(py, None, move |_| {
+        let input = given.fingerprint();
+        Ok((given.repaired(&options)?, input))
+    })?;
+    Repaired::new(py, repaired, Call::new("repair", &kept, "surface", input).into())
 }
 
 fn parse_holes(value: &Bound<'_, PyAny>) -> PyResult<CloseHoles> {

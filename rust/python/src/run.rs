@@ -15,7 +15,7 @@ use numpy::ndarray::Array2;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use crate::arrays::from_array;
+use crate::arrays::own_array;
 use crate::errors::{internal, to_python};
 
 const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
@@ -143,7 +143,7 @@ fn wait<T: Send>(
             }
             Ok(Message::Preview(positions)) => {
                 if let Some(preview) = preview {
-                    preview.call1((from_array(py, positions),))?;
+                    preview.call1((own_array(py, positions),))?;
                 }
             }
             Err(RecvTimeoutError::Timeout) => {}

@@ -7,18 +7,20 @@ use authalic::{SeamMethod, SeamOptions, Symmetry, UnwrapOptions, UnwrapSeams};
 use numpy::ndarray::{Array1, Array2};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::{Borrowed, FromPyObject};
+use pyo3::{Borrowed, FromPyObject, IntoPyObjectExt};
 
 use crate::arrays::{Reals, from_array, reals};
 use crate::errors::{bad_array, bad_option};
 use crate::indices::{from_index_list, from_indices, index_table};
 use crate::options::choice;
+use crate::provenance::{Call, fingerprint, options};
+use crate::result::{ResultBase, made, restorable};
 use crate::run::run;
 use crate::surface::Given;
 use crate::values::Values;
 
 /// Seams of a surface, and the islands that they leave.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, get_all, extends = ResultBase, module = "authalic")]
 pub struct Seams {
     /// (k, 2) int64: the ends of each seam, the lower one first, ascending; the fixed seams among them.
     edges: Py<PyArray2<i64>>,
@@ -36,6 +38,8 @@ pub struct Seams {
     seconds: f64,
 }
 
+restorable!(Seams { status, edges, islands, island_of, length, predicted, seconds });
+
 #[pymethods]
 impl Seams {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -52,7 +56,7 @@ impl Seams {
 }
 
 /// The UVs of a surface: one map of its islands into the unit square.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, get_all, extends = ResultBase, module = "authalic")]
 pub struct Unwrap {
     /// (k, 2) float64: the points, by island, then by vertex; in the unit square if they are packed.
     uv: Reals,
@@ -81,6 +85,22 @@ pub struct Unwrap {
     /// Wall time of the call.
     seconds: f64,
 }
+
+restorable!(Unwrap {
+    status,
+    uv,
+    faces,
+    vertex_of,
+    islands,
+    island_of,
+    edges,
+    length,
+    shear,
+    shear_p99,
+    area_ratio_std,
+    packed,
+    seconds
+});
 
 #[pymethods]
 impl Unwrap {
@@ -166,6 +186,13 @@ const METHODS: [(&str, SeamMethod); 2] = [("search", SeamMethod::Search), ("cone
 #[derive(Clone, Copy)]
 pub struct SymmetryWish(Symmetry);
 
+impl SymmetryWish {
+    /// The word of the option.
+    fn as_str(self) -> &'static str {
+        if self.0 == Symmetry::Auto { "auto" } else { "off" }
+    }
+}
+
 /// The default of a symmetry.
 const AUTO: SymmetryWish = SymmetryWish(Symmetry::Auto);
 
@@ -191,6 +218,16 @@ impl<'py> FromPyObject<'_, 'py> for SymmetryWish {
 pub enum SeamSource {
     Automatic,
     Given(Option<Py<PyAny>>),
+}
+
+impl SeamSource {
+    /// The option as it may be given again.
+    fn object(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
+        match self {
+            Self::Automatic => "auto".into_py_any(py).map(Some),
+            Self::Given(edges) => Ok(edges.as_ref().map(|edges| edges.clone_ref(py))),
+        }
+    }
 }
 
 impl<'py> FromPyObject<'_, 'py> for SeamSource {
@@ -312,18 +349,23 @@ pub fn seams(
     diagonals: Option<&Bound<'_, PyAny>>,
     method: &str,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Seams> {
+) -> PyResult<Py<Seams>> {
     // 1. Arguments to plain data
+    let kept = options!(
+        py; target, fixed, weights, front, symmetry = symmetry.as_str(), max_islands, overlap, diagonals, method
+    )?;
     let began = Instant::now();
     let given = Given::pair(surface, ["surface", "surface vertices", "surface faces"])?;
     let arguments =
         Arguments { target, fixed, weights, front, symmetry, max_islands, overlap, diagonals, method };
     let wishes = arguments.parse(given.n_vertices())?;
     // 2. The run
-    let seams =
-        run(py, progress, move |observer| authalic::seams(&given.surface()?, &wishes.options(), observer))?;
+    let (seams, input) = run(py, progress, move |observer| {
+        let surface = given.surface()?;
+        Ok((authalic::seams(&surface, &wishes.options(), observer)?, fingerprint(&surface)))
+    })?;
     // 3. The result
-    Ok(Seams {
+    let seams = Seams {
         edges: from_indices(py, seams.edges.view()),
         islands: seams.islands,
         island_of: from_index_list(py, seams.island_of.iter().map(|&island| island as usize)),
@@ -331,7 +373,8 @@ pub fn seams(
         predicted: seams.predicted,
         status: seams.status.as_str(),
         seconds: began.elapsed().as_secs_f64(),
-    })
+    };
+    made(py, seams, Call::new("seams", &kept, "surface", input).into())
 }
 
 /// Cuts a surface, maps its islands at one density, and packs them into the unit square.
@@ -431,8 +474,12 @@ pub fn unwrap(
     margin: f64,
     rotate: bool,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Unwrap> {
+) -> PyResult<Py<Unwrap>> {
     // 1. Arguments to plain data
+    let kept = options!(
+        py; seams = seams.object(py)?, target, fixed, weights, front, symmetry = symmetry.as_str(), max_islands, overlap,
+        diagonals, pack, margin, rotate
+    )?;
     let began = Instant::now();
     let given = Given::pair(surface, ["surface", "surface vertices", "surface faces"])?;
     let method = "search";
@@ -447,16 +494,17 @@ pub fn unwrap(
         }
     };
     // 2. The run
-    let map = run(py, progress, move |observer| {
+    let (map, input) = run(py, progress, move |observer| {
+        let surface = given.surface()?;
         let seams = match &edges {
             None => UnwrapSeams::Automatic(wishes.options()),
             Some(edges) => UnwrapSeams::Given(edges.view()),
         };
         let options = UnwrapOptions { seams, overlap, pack, margin, rotate };
-        authalic::unwrap(&given.surface()?, &options, observer)
+        Ok((authalic::unwrap(&surface, &options, observer)?, fingerprint(&surface)))
     })?;
     // 3. The result
-    Ok(Unwrap {
+    let map = Unwrap {
         uv: from_array(py, map.uv),
         faces: from_indices(py, map.faces.view()),
         vertex_of: from_index_list(py, map.vertex_of.iter().map(|vertex| vertex.index())),
@@ -470,5 +518,6 @@ pub fn unwrap(
         packed: map.packed,
         status: map.status.as_str(),
         seconds: began.elapsed().as_secs_f64(),
-    })
+    };
+    made(py, map, Call::new("unwrap", &kept, "surface", input).into())
 }

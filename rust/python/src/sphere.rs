@@ -3,23 +3,28 @@
 
 use std::sync::Arc;
 
-use authalic::{LineSearch, RepairOptions, SphereFaces, SphereMapOptions, SphereMethod};
-use numpy::ndarray::ArrayView2;
-use numpy::{PyArray1, PyArray2};
+use authalic::{
+    InverseMap, LineSearch, Outside, RefinedFaces, RepairOptions, SphereFaces, SphereMapOptions, SphereMethod,
+};
+use numpy::ndarray::{ArrayView2, Axis, concatenate};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
-use crate::arrays::{from_array, real_table, reals};
+use crate::arrays::{Reals, from_array, frozen, real_table, reals};
 use crate::distortion::Distortion;
-use crate::errors::bad_option;
-use crate::indices::{from_index_list, from_indices};
+use crate::errors::{bad_option, to_python};
+use crate::indices::{from_index_list, from_indices, index_table, narrowed};
 use crate::layout::{Arguments, Layout, layout};
+use crate::lookup::{Beyond, Invertible, Lookup, Request, image_of, locate};
 use crate::options::{history, parse_iterations};
+use crate::provenance::{Call, Origin, fingerprint, options};
 use crate::repair::{Prepared, Repaired, check_no_start};
+use crate::result::{Restorable, ResultBase, State, made, restorable};
 use crate::run::run;
 use crate::surface::{Given, oriented};
 
 /// A one-to-one map of a closed surface to the unit sphere.
-#[pyclass(frozen, module = "authalic")]
+#[pyclass(frozen, extends = ResultBase, module = "authalic")]
 pub struct SphereMap {
     /// (n, 3) float64: the image of each vertex, unit rows; faces are seen counter-clockwise from outside.
     #[pyo3(get)]
@@ -61,12 +66,13 @@ pub struct SphereMap {
     seconds: f64,
     /// What `layout` lays out.
     sphere: Arc<SphereFaces>,
+    inverse: Lookup,
 }
 
 /// The faces of a surface, some of them split, and the split points.
 ///
 /// Split points are numbered on from the vertices: the first has the number n.
-#[pyclass(frozen, module = "authalic")]
+#[pyclass(frozen, extends = ResultBase, module = "authalic")]
 pub struct Refinement {
     /// (k, 2) int64: the ends of the edge that each split point halves: vertices, or earlier split points.
     #[pyo3(get)]
@@ -89,17 +95,24 @@ pub struct Refinement {
 }
 
 impl Refinement {
-    fn new(py: Python<'_>, refinement: authalic::Refinement, surface: &authalic::Surface) -> PyResult<Self> {
-        Ok(Self {
+    fn new(
+        py: Python<'_>,
+        refinement: authalic::Refinement,
+        surface: &authalic::Surface,
+    ) -> PyResult<Py<Self>> {
+        let refinement = Self {
             vertices: from_array(py, refinement.vertices(surface)),
             parents: from_indices(py, refinement.parents.view()),
             positions: from_array(py, refinement.positions),
             faces: from_indices(py, refinement.faces.view()),
             face_of: from_index_list(py, refinement.face_of.into_iter()),
-            distortion: Py::new(py, Distortion::new(py, refinement.distortion))?,
-        })
+            distortion: Distortion::new(py, refinement.distortion)?,
+        };
+        made(py, refinement, None)
     }
 }
+
+restorable!(Refinement { parents, vertices, positions, faces, face_of, distortion });
 
 #[pymethods]
 impl Refinement {
@@ -114,30 +127,236 @@ impl Refinement {
 }
 
 impl SphereMap {
-    /// The map without a refinement, and what is laid out of it.
+    /// The map, what is laid out of it, its split faces and the repaired surface.
     pub fn new(
         py: Python<'_>,
         map: authalic::SphereMap,
         faces: ArrayView2<'_, u32>,
         sphere: SphereFaces,
-    ) -> PyResult<Self> {
-        Ok(Self {
+        (refinement, repaired): (Option<Py<Refinement>>, Option<Py<Repaired>>),
+        call: Option<Call>,
+    ) -> PyResult<Py<Self>> {
+        let map = Self {
             positions: from_array(py, map.positions),
             faces: from_indices(py, faces),
             status: map.status.as_str(),
             iterations: map.history.iterations(),
             history: history(py, map.history.records())?,
-            distortion: Py::new(py, Distortion::new(py, map.distortion))?,
-            refinement: None,
-            repaired: None,
+            distortion: Distortion::new(py, map.distortion)?,
+            refinement,
+            repaired,
             seconds: map.seconds,
             sphere: Arc::new(sphere),
+            inverse: Lookup::default(),
+        };
+        made(py, map, call.map(Origin::Call))
+    }
+}
+
+impl Restorable for SphereMap {
+    const FIELDS: &'static [&'static str] = &[
+        "positions",
+        "faces",
+        "status",
+        "iterations",
+        "history",
+        "distortion",
+        "refinement",
+        "repaired",
+        "seconds",
+        "_targets",
+    ];
+
+    fn restored(state: &State<'_>) -> PyResult<Self> {
+        let (positions, faces) = (state.object("positions")?, state.object("faces")?);
+        let refinement: Option<Py<Refinement>> = state.get("refinement")?;
+        let targets: Vec<f64> = reals(&state.object("_targets")?, "_targets")?.to_vec();
+        let sphere = laid_out(&positions, &faces, refinement.as_ref().map(Py::get), targets)?;
+        Ok(Self {
+            positions: state.get("positions")?,
+            faces: state.get("faces")?,
+            status: state.status()?,
+            iterations: state.get("iterations")?,
+            history: state.get("history")?,
+            distortion: state.get("distortion")?,
+            refinement,
+            repaired: state.get("repaired")?,
+            seconds: state.get("seconds")?,
+            sphere: Arc::new(sphere),
+            inverse: Lookup::default(),
+        })
+    }
+}
+
+/// The faces on the sphere of a saved map.
+fn laid_out(
+    positions: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+    refinement: Option<&Refinement>,
+    targets: Vec<f64>,
+) -> PyResult<SphereFaces> {
+    let py = positions.py();
+    let positions = real_table::<3>(positions, "positions")?;
+    let n_vertices = positions.nrows();
+    let (points, faces, face_of) = match refinement {
+        None => (positions, index_table::<3>(faces, "faces", n_vertices)?, None),
+        Some(refinement) => {
+            let split = refinement.positions.bind(py).readonly();
+            let points = concatenate![Axis(0), positions, split.as_array()];
+            let face_of = refinement.face_of.bind(py).readonly().as_array().mapv(|face| face as usize);
+            (points, narrowed(refinement.faces.bind(py)), Some(face_of.to_vec()))
+        }
+    };
+    let image = authalic::Surface::new(points, faces).map_err(|error| to_python(py, &error))?;
+    Ok(SphereFaces { image, targets, face_of, n_vertices })
+}
+
+impl Invertible for SphereMap {
+    fn inverse(&self, py: Python<'_>) -> PyResult<Arc<InverseMap>> {
+        self.inverse.get(py, || {
+            let (positions, faces) = (self.positions.bind(py).readonly(), narrowed(self.faces.bind(py)));
+            let Some(refinement) = self.refinement.as_ref().map(Py::get) else {
+                return InverseMap::of_positions(positions.as_array(), faces.view(), None);
+            };
+            let [parents, parts] = [&refinement.parents, &refinement.faces]
+                .map(|rows| rows.bind(py).readonly().as_array().mapv(|k| k as u32));
+            let face_of = refinement.face_of.bind(py).readonly().as_array().mapv(|face| face as usize);
+            let split = refinement.positions.bind(py).readonly();
+            let refined = RefinedFaces {
+                parents: parents.view(),
+                positions: split.as_array(),
+                faces: parts.view(),
+                face_of: face_of.as_slice().expect("one row"),
+            };
+            InverseMap::of_positions(positions.as_array(), faces.view(), Some(refined))
         })
     }
 }
 
 #[pymethods]
 impl SphereMap {
+    /// (m,) or (m',) float64: the target measure of each face of the map or of its refinement, for saved maps.
+    #[getter]
+    fn _targets(&self, py: Python<'_>) -> Py<PyArray1<f64>> {
+        frozen(PyArray1::from_slice(py, &self.sphere.targets))
+    }
+
+    /// Find the places on the surface whose images are given points.
+    ///
+    /// Parameters
+    /// ----------
+    /// points : (k, 3) real array
+    ///     Points of the sphere, of which only the directions count.
+    ///
+    /// Returns
+    /// -------
+    /// triangles : (k,) int64 array
+    ///     The face of each place, of the lowest index where several share the point; -1 in holes, with `fill_holes`.
+    /// barycentric : (k, 3) float64 array
+    ///     The weights of the corners of that face in `faces`, not negative, with sum 1; NaN where there is none.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     The points have another shape, or are zero or not finite.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    /// >>> ball = authalic.sphere_map(corners, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
+    /// >>> triangles, barycentric = ball.locate([[1, 1, -1], [0, 0, -3]])
+    /// >>> triangles.tolist(), barycentric[0].round(3).tolist()
+    /// ([0, 0], [0.333, 0.333, 0.333])
+    fn locate(
+        &self,
+        py: Python<'_>,
+        points: &Bound<'_, PyAny>,
+    ) -> PyResult<(Py<PyArray1<i64>>, Py<PyArray2<f64>>)> {
+        locate(py, self.inverse(py)?, real_table::<3>(points, "points")?, Outside::Nowhere)
+    }
+
+    /// Map places on the surface: the inverse of `locate`.
+    ///
+    /// Parameters
+    /// ----------
+    /// triangles : (k,) integer array
+    ///     Faces; -1 for no place.
+    /// barycentric : (k, 3) real array
+    ///     The weights of their corners.
+    ///
+    /// Returns
+    /// -------
+    /// (k, 3) float64 array
+    ///     Unit rows; NaN where there is no place.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     An array has another shape, or a face is out of range.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    /// >>> ball = authalic.sphere_map(corners, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
+    /// >>> ball.image_of([0], [[1, 1, 1]]).round(3).tolist()
+    /// [[0.577, 0.577, -0.577]]
+    fn image_of(
+        &self,
+        py: Python<'_>,
+        triangles: &Bound<'_, PyAny>,
+        barycentric: &Bound<'_, PyAny>,
+    ) -> PyResult<Reals> {
+        image_of(py, self.inverse(py)?, triangles, barycentric)
+    }
+
+    /// Carry values of the surface to points of its image.
+    ///
+    /// Parameters
+    /// ----------
+    /// values : (n, ...) or (m, ...) array
+    ///     One row per vertex, interpolated linearly on each face, or one per face.
+    /// points : (k, 3) real array
+    ///     Points of the sphere, of which only the directions count.
+    /// per : "vertex" or "face", optional
+    ///     The elements that `values` has a row for. Default: as its length says, vertices if both fit.
+    /// nearest : bool
+    ///     Take the value of the corner with the largest weight, of any dtype, instead of interpolating: for labels.
+    ///
+    /// Returns
+    /// -------
+    /// (k, ...) array
+    ///     float64; with `nearest`, the dtype of `values`.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     The points or values have another shape, or without `nearest` are no real numbers.
+    /// ValueError
+    ///     An option is none of those above.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    /// >>> ball = authalic.sphere_map(corners, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
+    /// >>> ball.sample([0, 0, 0, 1], [[-1, -1, 1], [1, 1, -1]]).tolist()
+    /// [1.0, 0.0]
+    #[pyo3(signature = (values, points, *, per=None, nearest=false))]
+    fn sample(
+        &self,
+        py: Python<'_>,
+        values: &Bound<'_, PyAny>,
+        points: &Bound<'_, PyAny>,
+        per: Option<&str>,
+        nearest: bool,
+    ) -> PyResult<Py<PyAny>> {
+        let points = real_table::<3>(points, "points")?;
+        let request = Request { values, per, nearest, beyond: Beyond::new(None)? };
+        request.at(py, self.inverse(py)?, points)
+    }
+
     /// Lays the map out in the plane, cut open along a seam: areas are preserved, no face is folded.
     ///
     /// A vertex is moved onto each singular point of the layout, the images of the faces are joined in the plane, and
@@ -211,7 +430,7 @@ impl SphereMap {
         candidates: Option<&Bound<'_, PyAny>>,
         precision: &str,
         progress: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Layout> {
+    ) -> PyResult<Py<Layout>> {
         let arguments = Arguments { kind, pole, seam, polygons, density, candidates, precision, progress };
         layout(py, self.sphere.clone(), &arguments)
     }
@@ -331,8 +550,12 @@ pub fn sphere_map(
     fill_holes: bool,
     repair: bool,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<SphereMap> {
+) -> PyResult<Py<SphereMap>> {
     // 1. Arguments to plain data
+    let kept = options!(
+        py; method, line_search, density, angle_weight, area_tolerance, initial, max_iterations, tolerance, refine, unfold,
+        fill_holes, repair
+    )?;
     let (method, line_search) = (parse_method(method)?, parse_line_search(line_search)?);
     let max_iterations = max_iterations.map(parse_iterations).transpose()?;
     let given = Given::new(vertices, faces)?;
@@ -341,7 +564,8 @@ pub fn sphere_map(
     let repair = repair.then(|| RepairOptions::for_a_map(false));
     let initial = initial.map(|initial| real_table::<3>(initial, "initial")).transpose()?;
     // 2. The run
-    let (mut map, prepared, sphere) = run(py, progress, move |observer| {
+    let (mut map, prepared, sphere, input) = run(py, progress, move |observer| {
+        let input = given.fingerprint();
         let prepared = Prepared::new(given, density, repair.as_ref())?;
         let surface = &prepared.surface;
         let density = prepared.density.as_ref().map(|density| density.view());
@@ -361,14 +585,15 @@ pub fn sphere_map(
         };
         let map = authalic::sphere_map(surface, &options, observer)?;
         let sphere = map.faces_on_sphere(surface.oriented_faces()?.view())?;
-        Ok((map, prepared, sphere))
+        Ok((map, prepared, sphere, input))
     })?;
     // 3. The result
     let Prepared { surface, repaired, .. } = prepared;
-    let repaired = repaired.map(|repaired| Py::new(py, Repaired::new(py, repaired)?)).transpose()?;
+    let repaired = repaired.map(|repaired| Repaired::new(py, repaired, None)).transpose()?;
     let refinement = map.refinement.take().map(|refinement| Refinement::new(py, *refinement, &surface));
-    let refinement = refinement.transpose()?.map(|refinement| Py::new(py, refinement)).transpose()?;
-    Ok(SphereMap { refinement, repaired, ..SphereMap::new(py, map, oriented(&surface).view(), sphere)? })
+    let call = Call::new("sphere_map", &kept, "surface", input);
+    let parts = (refinement.transpose()?, repaired);
+    SphereMap::new(py, map, oriented(&surface).view(), sphere, parts, Some(call))
 }
 
 fn parse_method(method: &str) -> PyResult<SphereMethod> {

@@ -2,14 +2,17 @@
 //! Bindings of `authalic::hyperbolic_structure`: Fuchsian group, pants and hexagons.
 
 use authalic::{self as core, Complex, Moebius, Vertex};
-use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
+use numpy::{Complex64, PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{Reals, from_array};
+use crate::arrays::{Reals, from_array, frozen};
 use crate::errors::bad_option;
 use crate::indices::{from_index_list, from_indices};
 use crate::options::{choice, metrics};
+use crate::provenance::{Call, fingerprint, options};
 use crate::registration::vertex_paths;
+use crate::result::{Restorable, ResultBase, State, made, restorable};
 use crate::run::run;
 use crate::surface::Given;
 
@@ -17,7 +20,7 @@ use crate::surface::Given;
 type Isometries = Py<PyArray2<Complex64>>;
 
 /// A pair of pants between closed geodesics, and its two right-angled hexagons.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, get_all, extends = ResultBase, module = "authalic")]
 pub struct Pants {
     /// (3,) float64: the lengths of its boundaries.
     ///
@@ -36,18 +39,21 @@ pub struct Pants {
 }
 
 impl Pants {
-    fn new(py: Python<'_>, pants: &core::Pants) -> PyResult<Self> {
+    fn new(py: Python<'_>, pants: &core::Pants) -> PyResult<Py<Self>> {
         let hexagons = pants.hexagons.map(|corners| corners.map(|z| [z.re, z.im]));
         let as_vectors: Vec<Vec<Vec<f64>>> =
             hexagons.iter().map(|corners| corners.iter().map(|corner| corner.to_vec()).collect()).collect();
-        Ok(Self {
-            boundary_lengths: PyArray1::from_slice(py, &pants.boundary_lengths).unbind(),
-            hexagons: PyArray3::from_vec3(py, &as_vectors)?.unbind(),
-            angles: PyArray2::from_vec2(py, &pants.angles.map(|angles| angles.to_vec()))?.unbind(),
-            placement: PyArray1::from_slice(py, &[pants.placement.a, pants.placement.b]).unbind(),
-        })
+        let pants = Self {
+            boundary_lengths: frozen(PyArray1::from_slice(py, &pants.boundary_lengths)),
+            hexagons: frozen(PyArray3::from_vec3(py, &as_vectors)?),
+            angles: frozen(PyArray2::from_vec2(py, &pants.angles.map(|angles| angles.to_vec()))?),
+            placement: frozen(PyArray1::from_slice(py, &[pants.placement.a, pants.placement.b])),
+        };
+        made(py, pants, None)
     }
 }
+
+restorable!(Pants { boundary_lengths, hexagons, angles, placement });
 
 #[pymethods]
 impl Pants {
@@ -62,7 +68,7 @@ impl Pants {
 /// A chain runs through all B features: the curves as given, then the other boundary loops. An arc leads from each
 /// feature to the next. Cut along features and arcs, the surface is a disk, the fundamental domain. A row (a, b)
 /// stands for the isometry z ↦ (a z + b) / (conj(b) z + conj(a)) of the Poincaré disk, with |a|² − |b|² = 1.
-#[pyclass(frozen, module = "authalic")]
+#[pyclass(frozen, extends = ResultBase, module = "authalic")]
 pub struct HyperbolicStructure {
     /// (n, 3) float64: the vertices of the sliced surface; a vertex of a slit occurs on both banks.
     #[pyo3(get)]
@@ -120,7 +126,8 @@ pub struct HyperbolicStructure {
     /// The hyperbolic area, 2π(B − 2) up to rounding.
     #[pyo3(get)]
     area: f64,
-    structure: core::HyperbolicStructure,
+    /// The isometries of `generators`.
+    motions: Vec<Moebius>,
 }
 
 /// Vertices on the left and on the right.
@@ -134,26 +141,78 @@ impl HyperbolicStructure {
         };
         let vertex_of =
             structure.vertex_of.iter().map(|vertex| vertex.map_or(-1, |vertex| i64::from(vertex.0)));
-        let pants = structure.pants.iter().map(|pants| Py::new(py, Pants::new(py, pants)?));
+        let pants = structure.pants.iter().map(|pants| Pants::new(py, pants));
         Ok(Self {
             vertices: from_array(py, structure.vertices()),
             faces: from_indices(py, structure.faces().view()),
-            vertex_of: PyArray1::from_iter(py, vertex_of).unbind(),
+            vertex_of: frozen(PyArray1::from_iter(py, vertex_of)),
             disk_faces: from_indices(py, structure.disk_faces().view()),
             positions: from_array(py, structure.positions()),
             disk_vertex_of: list(&structure.disk_vertex_of),
             order: from_index_list(py, structure.chain.iter().map(|&(feature, _)| feature)),
-            reversed: PyArray1::from_iter(py, structure.chain.iter().map(|&(_, reversed)| reversed)).unbind(),
+            reversed: frozen(PyArray1::from_iter(py, structure.chain.iter().map(|&(_, reversed)| reversed))),
             banks: sides(&structure.banks),
             arcs: sides(&structure.arcs),
             generators: isometries(py, &structure.generators)?,
-            boundary_lengths: PyArray1::from_slice(py, &structure.boundary_lengths).unbind(),
+            boundary_lengths: frozen(PyArray1::from_slice(py, &structure.boundary_lengths)),
             pants: pants.collect::<PyResult<_>>()?,
             pants_curves: structure.pants_curves().into_iter().map(|curve| from_array(py, curve)).collect(),
-            lengths: PyArray1::from_slice(py, &structure.lengths).unbind(),
+            lengths: frozen(PyArray1::from_slice(py, &structure.lengths)),
             curvature: structure.curvature,
             area: structure.area,
-            structure,
+            motions: structure.generators,
+        })
+    }
+}
+
+impl Restorable for HyperbolicStructure {
+    const FIELDS: &'static [&'static str] = &[
+        "vertices",
+        "faces",
+        "vertex_of",
+        "disk_faces",
+        "positions",
+        "disk_vertex_of",
+        "order",
+        "reversed",
+        "banks",
+        "arcs",
+        "generators",
+        "boundary_lengths",
+        "pants",
+        "pants_curves",
+        "lengths",
+        "curvature",
+        "area",
+    ];
+
+    fn restored(state: &State<'_>) -> PyResult<Self> {
+        let generators: Isometries = state.get("generators")?;
+        let rows = generators.bind(state.py()).readonly();
+        let rows = rows.as_array();
+        if rows.ncols() != 2 {
+            return Err(PyValueError::new_err("the saved result has wrong generators"));
+        }
+        let motions = rows.rows().into_iter().map(|row| Moebius { a: row[0], b: row[1] }).collect();
+        Ok(Self {
+            vertices: state.get("vertices")?,
+            faces: state.get("faces")?,
+            vertex_of: state.get("vertex_of")?,
+            disk_faces: state.get("disk_faces")?,
+            positions: state.get("positions")?,
+            disk_vertex_of: state.get("disk_vertex_of")?,
+            order: state.get("order")?,
+            reversed: state.get("reversed")?,
+            banks: state.get("banks")?,
+            arcs: state.get("arcs")?,
+            generators,
+            boundary_lengths: state.get("boundary_lengths")?,
+            pants: state.get("pants")?,
+            pants_curves: state.get("pants_curves")?,
+            lengths: state.get("lengths")?,
+            curvature: state.get("curvature")?,
+            area: state.get("area")?,
+            motions,
         })
     }
 }
@@ -161,7 +220,7 @@ impl HyperbolicStructure {
 /// Isometries as rows (a, b).
 fn isometries(py: Python<'_>, motions: &[Moebius]) -> PyResult<Isometries> {
     let rows: Vec<Vec<Complex>> = motions.iter().map(|motion| vec![motion.a, motion.b]).collect();
-    Ok(PyArray2::from_vec2(py, &rows)?.unbind())
+    Ok(frozen(PyArray2::from_vec2(py, &rows)?))
 }
 
 #[pymethods]
@@ -202,7 +261,7 @@ impl HyperbolicStructure {
     fn cover(&self, py: Python<'_>, copies: i64) -> PyResult<(Vec<Py<PyAny>>, Isometries)> {
         let count = usize::try_from(copies).ok().filter(|&count| count > 0);
         let count = count.ok_or_else(|| bad_option(format!("copies must be ≥ 1, but is {copies}")))?;
-        let cover = self.structure.cover(count);
+        let cover = core::cover(&self.motions, count);
         let word =
             |copy: &core::CoverCopy| Ok(pyo3::types::PyTuple::new(py, &copy.word)?.into_any().unbind());
         let words = cover.iter().map(word).collect::<PyResult<_>>()?;
@@ -210,14 +269,14 @@ impl HyperbolicStructure {
         Ok((words, isometries(py, &motions)?))
     }
 
-    fn __repr__(&self) -> String {
-        format!(
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!(
             "HyperbolicStructure({} features, {} pairs of pants, area {:.4}, curvature {:.1e})",
-            self.structure.chain.len(),
-            self.structure.pants.len(),
+            self.boundary_lengths.bind(py).len()?,
+            self.pants.len(),
             self.area,
             self.curvature,
-        )
+        ))
     }
 }
 
@@ -281,12 +340,15 @@ pub fn hyperbolic_structure(
     curves: &Bound<'_, PyAny>,
     metric: &str,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<HyperbolicStructure> {
+) -> PyResult<Py<HyperbolicStructure>> {
+    let kept = options!(py; curves, metric)?;
     let metric = choice("metric", metric, &metrics())?;
     let given = Given::new(vertices, faces)?;
     let curves = vertex_paths(curves, "curves", given.n_vertices())?;
-    let structure = run(py, progress, move |observer| {
-        core::hyperbolic_structure(&given.surface()?, &curves, metric, observer)
+    let (structure, input) = run(py, progress, move |observer| {
+        let surface = given.surface()?;
+        Ok((core::hyperbolic_structure(&surface, &curves, metric, observer)?, fingerprint(&surface)))
     })?;
-    HyperbolicStructure::new(py, structure)
+    let call = Call::new("hyperbolic_structure", &kept, "surface", input);
+    made(py, HyperbolicStructure::new(py, structure)?, call.into())
 }

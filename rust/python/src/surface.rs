@@ -5,15 +5,16 @@ use authalic::{Error, RepairOptions, Topology, Vertex};
 use numpy::ndarray::{Array2, Axis, aview2, concatenate};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyTypeError;
-use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
-use crate::arrays::{from_array, real_table};
-use crate::errors::bad_array;
+use crate::arrays::{from_array, frozen, real_table};
+use crate::errors::{bad_array, to_python};
 use crate::hints::{refuse_plane, refuse_vtk};
 use crate::indices::{from_index_list, from_indices, index_table};
 use crate::mesh_objects::mesh_parts;
+use crate::provenance::{Fingerprint, fingerprint, fingerprint_of};
+use crate::result::{Restorable, ResultBase, State, made, restorable};
 use crate::run::run;
 
 /// A triangle mesh that is checked once, and accepted in the place of vertices and faces.
@@ -50,7 +51,7 @@ use crate::run::run;
 /// 0
 /// >>> [patch.surface for patch in surface.cut(seams=[[0, 1], [0, 3]])]
 /// [Surface(4 vertices, 2 faces), Surface(4 vertices, 2 faces)]
-#[pyclass(frozen, module = "authalic")]
+#[pyclass(frozen, extends = ResultBase, module = "authalic")]
 pub struct Surface {
     handle: authalic::Surface,
     vertices: PyOnceLock<Py<PyArray2<f64>>>,
@@ -84,29 +85,29 @@ impl Surface {
         vertices: &Bound<'_, PyAny>,
         faces: Option<&Bound<'_, PyAny>>,
         flat: bool,
-    ) -> PyResult<Self> {
+    ) -> PyResult<PyClassInitializer<Self>> {
         let given = match faces {
             Some(faces) if flat => Given::flat(vertices, faces)?,
             faces => Given::new(vertices, faces)?,
         };
-        Ok(run(py, None, move |_| given.surface())?.into())
+        let surface = Self::from(run(py, None, move |_| given.surface())?);
+        Ok(PyClassInitializer::from(ResultBase::of_unknown_origin()).add_subclass(surface))
     }
 
     /// (n, 3) float64, read-only: the vertices as given.
     #[getter]
     fn vertices(&self, py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
-        let made = self
-            .vertices
-            .get_or_try_init(py, || read_only(PyArray2::from_array(py, &self.handle.vertices())))?;
+        let made =
+            self.vertices.get_or_init(py, || frozen(PyArray2::from_array(py, &self.handle.vertices())));
         Ok(made.clone_ref(py))
     }
 
     /// (m, 3) int64, read-only: the faces as given; results have the faces as oriented.
     #[getter]
     fn faces(&self, py: Python<'_>) -> PyResult<Py<PyArray2<i64>>> {
-        let made = self.faces.get_or_try_init(py, || {
-            read_only(PyArray2::from_owned_array(py, self.handle.faces().mapv(i64::from)))
-        })?;
+        let made = self
+            .faces
+            .get_or_init(py, || frozen(PyArray2::from_owned_array(py, self.handle.faces().mapv(i64::from))));
         Ok(made.clone_ref(py))
     }
 
@@ -185,7 +186,7 @@ impl Surface {
     /// >>> [len(patch.faces) for patch in square.cut(seams=[[0, 2]])]
     /// [1, 1]
     #[pyo3(signature = (*, seams=None))]
-    fn cut(&self, py: Python<'_>, seams: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Patch>> {
+    fn cut(&self, py: Python<'_>, seams: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Py<Patch>>> {
         patches(py, Given::Handle(self.handle.clone()), seams)
     }
 
@@ -194,12 +195,14 @@ impl Surface {
     }
 }
 
-/// An array that Python cannot write to.
-fn read_only<T: numpy::Element>(array: Bound<'_, PyArray2<T>>) -> PyResult<Py<PyArray2<T>>> {
-    let py = array.py();
-    let flags = array.getattr(intern!(py, "flags"))?;
-    flags.setattr(intern!(py, "writeable"), false)?;
-    Ok(array.unbind())
+impl Restorable for Surface {
+    const FIELDS: &'static [&'static str] = &["vertices", "faces"];
+
+    fn restored(state: &State<'_>) -> PyResult<Self> {
+        let [vertices, faces] = ["vertices", "faces"].map(|name| state.object(name));
+        let given = Given::arrays(&vertices?, &faces?, ["vertices", "faces"])?;
+        Ok(given.surface().map_err(|error| to_python(state.py(), &error))?.into())
+    }
 }
 
 fn index_lists(py: Python<'_>, lists: &[Vec<Vertex>]) -> Vec<Py<PyArray1<i64>>> {
@@ -207,7 +210,7 @@ fn index_lists(py: Python<'_>, lists: &[Vec<Vertex>]) -> Vec<Py<PyArray1<i64>>> 
 }
 
 /// One piece of a cut mesh (an island), with maps back to the input. Taken wherever a Surface is.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, get_all, extends = ResultBase, module = "authalic")]
 pub struct Patch {
     /// The patch as a surface of its own.
     surface: Py<Surface>,
@@ -234,9 +237,9 @@ pub struct Patch {
 }
 
 impl Patch {
-    fn new(py: Python<'_>, patch: authalic::Patch) -> PyResult<Self> {
+    fn new(py: Python<'_>, patch: authalic::Patch) -> PyResult<Py<Self>> {
         let face_of = patch.corner_of.column(0).iter().map(|&corner| corner as usize / 3).collect::<Vec<_>>();
-        Ok(Self {
+        let patch = Self {
             vertices: from_array(py, patch.surface.vertices().to_owned()),
             faces: from_indices(py, patch.surface.faces().view()),
             vertex_of: from_index_list(py, patch.vertex_of.iter().copied()),
@@ -247,10 +250,25 @@ impl Patch {
             boundary_loops: index_lists(py, &patch.topology.boundary_loops),
             is_disk: patch.is_disk(),
             is_closed: patch.is_closed(),
-            surface: Py::new(py, Surface::from(patch.surface))?,
-        })
+            surface: made(py, Surface::from(patch.surface), None)?,
+        };
+        made(py, patch, None)
     }
 }
+
+restorable!(Patch {
+    surface,
+    vertices,
+    faces,
+    vertex_of,
+    corner_of,
+    face_of,
+    euler_characteristic,
+    genus,
+    boundary_loops,
+    is_disk,
+    is_closed
+});
 
 #[pymethods]
 impl Patch {
@@ -303,11 +321,11 @@ pub fn cut(
     vertices: &Bound<'_, PyAny>,
     faces: Option<&Bound<'_, PyAny>>,
     seams: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Vec<Patch>> {
+) -> PyResult<Vec<Py<Patch>>> {
     patches(py, Given::new(vertices, faces)?, seams)
 }
 
-fn patches(py: Python<'_>, given: Given, seams: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Patch>> {
+fn patches(py: Python<'_>, given: Given, seams: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Py<Patch>>> {
     let seams = seams.map(|seams| index_table::<2>(seams, "seams", given.n_vertices())).transpose()?;
     let patches = run(py, None, move |_| {
         let surface = given.surface()?;
@@ -404,6 +422,14 @@ impl Given {
         let faces = index_table::<3>(faces, "faces", points.nrows())?;
         let heights = Array2::zeros((points.nrows(), 1));
         Ok(Self::Arrays(concatenate![Axis(1), points, heights], faces))
+    }
+
+    /// The fingerprint of what was given.
+    pub fn fingerprint(&self) -> Fingerprint {
+        match self {
+            Self::Handle(surface) => fingerprint(surface),
+            Self::Arrays(vertices, faces) => fingerprint_of(vertices.view(), faces.view()),
+        }
     }
 
     pub fn n_vertices(&self) -> usize {

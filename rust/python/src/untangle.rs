@@ -10,11 +10,13 @@ use pyo3::prelude::*;
 use crate::arrays::{self, Reals, from_array};
 use crate::distortion::Distortion;
 use crate::indices::{from_index_list, vertex_set};
+use crate::provenance::{Call, fingerprint, options};
+use crate::result::{ResultBase, made, restorable};
 use crate::run::run;
 use crate::surface::Given;
 
 /// A map without folds, made from one with folds.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, get_all, extends = ResultBase, module = "authalic")]
 pub struct Untangled {
     /// (n, 2) or (n, 3) float64: the map; rows of vertices that did not move keep their bits.
     image: Reals,
@@ -32,6 +34,8 @@ pub struct Untangled {
     /// Wall time of the call.
     seconds: f64,
 }
+
+restorable!(Untangled { status, image, moved, folded_before, distortion, seconds });
 
 #[pymethods]
 impl Untangled {
@@ -105,24 +109,27 @@ pub fn untangle(
     fixed: Option<&Bound<'_, PyAny>>,
     tolerance: f64,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Untangled> {
+) -> PyResult<Py<Untangled>> {
     // 1. Arguments to plain data
     let began = Instant::now();
+    let kept = options!(py; image, fixed, tolerance)?;
     let given = Given::pair(surface, ["surface", "surface vertices", "surface faces"])?;
     let image = arrays::image(image)?;
     let fixed = fixed.map_or(Ok(Vec::new()), |fixed| vertex_set(fixed, "fixed", given.n_vertices()))?;
     // 2. The run
-    let map = run(py, progress, move |observer| {
+    let (map, input) = run(py, progress, move |observer| {
+        let surface = given.surface()?;
         let options = UntangleOptions { fixed: &fixed, tolerance };
-        authalic::untangle(&given.surface()?, image.view(), &options, observer)
+        Ok((authalic::untangle(&surface, image.view(), &options, observer)?, fingerprint(&surface)))
     })?;
     // 3. The result
-    Ok(Untangled {
+    let result = Untangled {
         image: from_array(py, map.image),
         moved: from_index_list(py, map.moved.iter().copied()),
         folded_before: from_index_list(py, map.folded_before.iter().copied()),
         status: map.status.as_str(),
-        distortion: Py::new(py, Distortion::new(py, map.distortion))?,
+        distortion: Distortion::new(py, map.distortion)?,
         seconds: began.elapsed().as_secs_f64(),
-    })
+    };
+    made(py, result, Call::new("untangle", &kept, "surface", input).into())
 }

@@ -6,7 +6,7 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{as_array, converted, shape_words};
+use crate::arrays::{as_array, converted, kind, shape_words};
 
 /// Data of any kind and shape.
 pub struct Values<'py> {
@@ -45,6 +45,37 @@ impl<'py> Values<'py> {
         let table = self.array.call_method1(reshape, (PyTuple::new(py, by_row)?,))?;
         let taken = table.call_method1(intern!(py, "take"), (indices, 0))?;
         Ok(taken.call_method1(reshape, (PyTuple::new(py, shape)?,))?.unbind())
+    }
+}
+
+impl Values<'_> {
+    /// The given rows, in the same dtype, as an array of shape `shape`; `fill` in the place of those that are missing,
+    /// by default NaN, or what the dtype has for zero.
+    pub fn taken_or(
+        &self,
+        rows: &[Option<usize>],
+        fill: Option<&Bound<'_, PyAny>>,
+        shape: Vec<usize>,
+    ) -> PyResult<Py<PyAny>> {
+        let py = self.array.py();
+        let present: Vec<usize> = rows.iter().map(|row| row.unwrap_or(0)).collect();
+        let missing: Vec<i64> = (0..).zip(rows).filter(|(_, row)| row.is_none()).map(|(k, _)| k).collect();
+        if missing.is_empty() {
+            return self.taken(1, &present, shape);
+        }
+        let flat = std::iter::once(rows.len()).chain(self.shape()[1..].iter().copied()).collect();
+        let taken = self.taken(1, &present, flat)?.into_bound(py);
+        let is_real = "fc".contains(&kind(&self.array)?);
+        let fill = match fill {
+            Some(fill) => fill.clone(),
+            None if is_real => f64::NAN.into_pyobject(py)?.into_any(),
+            None => py
+                .import(intern!(py, "numpy"))?
+                .call_method1(intern!(py, "zeros"), (1, self.array.dtype()))?
+                .get_item(0)?,
+        };
+        taken.set_item(PyArray1::from_vec(py, missing), fill)?;
+        Ok(taken.call_method1(intern!(py, "reshape"), (PyTuple::new(py, shape)?,))?.unbind())
     }
 }
 

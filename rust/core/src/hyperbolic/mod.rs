@@ -29,6 +29,7 @@ mod harmonic;
 mod metric;
 pub(crate) mod moebius;
 mod options;
+mod record;
 mod register;
 #[cfg(test)]
 mod sample_meshes;
@@ -46,7 +47,7 @@ pub use metric::{FlowOptions, MetricMethod};
 pub use moebius::{Complex, Moebius};
 pub use options::{HarmonicSolver, HyperbolicEnergy, HyperbolicOptions};
 pub use register::register_hyperbolic;
-pub use structure::fuchsian::CoverCopy;
+pub use structure::fuchsian::{CoverCopy, cover};
 pub use structure::pants::Pants;
 pub use structure::{HyperbolicStructure, hyperbolic_structure};
 pub use warnings::{Warning, WarningKind};

@@ -14,6 +14,8 @@ mod bvh;
 mod nearest;
 mod rays;
 
+use std::sync::Arc;
+
 use robust::{Coord3D, orient3d};
 
 use crate::control::Watch;
@@ -63,25 +65,46 @@ pub(crate) fn points_on(locations: &[Location], points: &[Vector3], faces: &[[Ve
     parallel::map(locations.len(), |place| locations[place].point_on(points, faces))
 }
 
+/// The tree over the faces of a map, for a caller that keeps it beside the map.
+#[derive(Debug, Clone)]
+pub(crate) struct FaceTree {
+    /// Whether the map lies in the plane z = 1.
+    in_plane: bool,
+    tree: Arc<Tree>,
+}
+
+impl FaceTree {
+    /// The tree over `faces` with corners `positions`, as [`Locator::new`] takes them.
+    pub(crate) fn new(positions: &[Vector3], faces: &[[Vertex; 3]]) -> Self {
+        let in_plane = positions.iter().all(|position| position[2] == 1.0);
+        let bounds = parallel::map(faces.len(), |face| match triangle(positions, faces[face]) {
+            flat if in_plane => flat.into_iter().fold(Bounds::default(), Bounds::with),
+            spherical => spherical_bounds(spherical),
+        });
+        Self { in_plane, tree: Arc::new(Tree::new(&bounds)) }
+    }
+}
+
 /// Finds points in a map.
 pub(crate) struct Locator<'a> {
     positions: &'a [Vector3],
     faces: &'a [[Vertex; 3]],
     /// Whether the map lies in the plane z = 1.
     in_plane: bool,
-    tree: Tree,
+    tree: Arc<Tree>,
 }
 
 impl<'a> Locator<'a> {
     /// Prepares to find points among `faces` with corners `positions`, either all in the plane z = 1 or on
     /// the sphere.
     pub(crate) fn new(positions: &'a [Vector3], faces: &'a [[Vertex; 3]]) -> Self {
-        let in_plane = positions.iter().all(|position| position[2] == 1.0);
-        let bounds = parallel::map(faces.len(), |face| match triangle(positions, faces[face]) {
-            flat if in_plane => flat.into_iter().fold(Bounds::default(), Bounds::with),
-            spherical => spherical_bounds(spherical),
-        });
-        Self { positions, faces, in_plane, tree: Tree::new(&bounds) }
+        Self::with_tree(positions, faces, FaceTree::new(positions, faces))
+    }
+
+    /// [`Self::new`] with the tree that was made of the same map.
+    pub(crate) fn with_tree(positions: &'a [Vector3], faces: &'a [[Vertex; 3]], tree: FaceTree) -> Self {
+        let FaceTree { in_plane, tree } = tree;
+        Self { positions, faces, in_plane, tree }
     }
 
     /// The triangle of the lowest index that contains `x`; if there is none, the nearest point of the map.
@@ -89,9 +112,26 @@ impl<'a> Locator<'a> {
     /// `x` lies in the plane z = 1, or, for a map onto the sphere, anywhere but in the origin: its direction
     /// counts. At a vertex the coordinates are exactly 1 and 0.
     pub(crate) fn locate(&self, x: Vector3) -> Location {
-        let on_map = if self.in_plane { x } else { x.normalized() };
+        self.containing(x).unwrap_or_else(|| self.nearest(self.on_map(x)))
+    }
+
+    /// [`Self::locate`] where a triangle contains `x`, or is as near to it as `tolerance`.
+    pub(crate) fn locate_within(&self, x: Vector3, tolerance: f64) -> Option<Location> {
+        self.containing(x).or_else(|| {
+            let nearest = self.nearest(self.on_map(x));
+            let is_near = nearest.point_on(self.positions, self.faces).distance(self.on_map(x)) <= tolerance;
+            is_near.then_some(nearest)
+        })
+    }
+
+    fn on_map(&self, x: Vector3) -> Vector3 {
+        if self.in_plane { x } else { x.normalized() }
+    }
+
+    /// The triangle of the lowest index that contains `x`.
+    fn containing(&self, x: Vector3) -> Option<Location> {
         let mut containing: Option<(Face, [f64; 3])> = None;
-        self.tree.visit(on_map, |face| {
+        self.tree.visit(self.on_map(x), |face| {
             let Some(weights) = self.weights(face, x) else { return false };
             if containing.is_none_or(|(lowest, _)| face < lowest) {
                 containing = Some((face, weights));
@@ -99,10 +139,7 @@ impl<'a> Locator<'a> {
             // a point inside a face lies in no other
             weights.iter().all(|&weight| weight > 0.0)
         });
-        match containing {
-            Some((triangle, weights)) => Location { triangle, barycentric: normalized(weights) },
-            None => self.nearest(on_map),
-        }
+        containing.map(|(triangle, weights)| Location { triangle, barycentric: normalized(weights) })
     }
 
     /// The locations of many points; `None` if cancelled.

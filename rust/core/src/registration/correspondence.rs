@@ -26,12 +26,12 @@ use crate::vector::Vector3;
 /// A one-to-one map g of a source surface onto a target.
 #[derive(Debug, Clone)]
 pub struct Correspondence {
-    source: Arc<Registered>,
-    target: Arc<Registered>,
-    locations: Vec<Location>,
-    positions: Vec<Vector3>,
-    area_ratio: Vec<f64>,
-    in_holes: Vec<usize>,
+    pub(super) source: Arc<Registered>,
+    pub(super) target: Arc<Registered>,
+    pub(super) locations: Vec<Location>,
+    pub(super) positions: Vec<Vector3>,
+    pub(super) area_ratio: Vec<f64>,
+    pub(super) in_holes: Vec<usize>,
 }
 
 /// A surface and its place in the domain.

@@ -27,6 +27,7 @@ mod landmark_descent;
 mod landmarks;
 mod morph;
 mod options;
+mod record;
 pub(super) mod result;
 mod sphere;
 mod strain;

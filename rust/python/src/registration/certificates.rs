@@ -5,11 +5,12 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::indices::from_index_list;
+use crate::result::{ResultBase, made, restorable};
 
 /// The proof that a registration by curves is one-to-one and takes curve to curve.
 ///
 /// A map is a homeomorphism if all its faces are positively oriented, its area is the whole, and its banks agree.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, get_all, extends = ResultBase, module = "authalic")]
 pub struct Certificates {
     /// (j,) int64: source faces whose image is not positively oriented in the target's metric; none in a homeomorphism.
     folded: Py<PyArray1<i64>>,
@@ -36,8 +37,8 @@ pub struct Certificates {
 }
 
 impl Certificates {
-    pub(super) fn new(py: Python<'_>, certificates: &authalic::Certificates) -> Self {
-        Self {
+    pub(super) fn new(py: Python<'_>, certificates: &authalic::Certificates) -> PyResult<Py<Self>> {
+        let certificates = Self {
             folded: from_index_list(py, certificates.folded.iter().copied()),
             area: certificates.area,
             expected_area: certificates.expected_area,
@@ -48,9 +49,23 @@ impl Certificates {
             outside: certificates.outside,
             energy_ratio: certificates.energy_ratio,
             curvature: certificates.curvature.into(),
-        }
+        };
+        made(py, certificates, None)
     }
 }
+
+restorable!(Certificates {
+    folded,
+    area,
+    expected_area,
+    area_error,
+    curve_error,
+    bank_error,
+    cocycle_error,
+    outside,
+    energy_ratio,
+    curvature
+});
 
 #[pymethods]
 impl Certificates {

@@ -11,6 +11,7 @@ use super::surfaces::{SOURCE, TARGET, checked, vertex_paths};
 use crate::arrays::real_table;
 use crate::errors::bad_option;
 use crate::options::{choice, metrics, parse_iterations};
+use crate::provenance::options;
 use crate::run::run_with_preview;
 use crate::surface::Given;
 
@@ -128,7 +129,11 @@ pub fn register_hyperbolic(
     target_sphere: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
     preview: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Registration> {
+) -> PyResult<Py<Registration>> {
+    let kept = options!(
+        py; source_curves, target_curves, energy, area_weight, angle_weight, features, feature_weight, position_weight,
+        metric, solver, max_iterations, tolerance, source_sphere, target_sphere
+    )?;
     let mut options = HyperbolicOptions {
         energy: choice("energy", energy, &ENERGIES)?,
         area_weight,
@@ -166,7 +171,8 @@ pub fn register_hyperbolic(
         let registration = authalic::register_hyperbolic(&source, &target, &curves, &options, observer)?;
         Ok(Finished::Curves(registration.into()))
     })?;
-    Registration::new(py, finished)
+    let call = finished.call(py, "register_hyperbolic", &kept);
+    Registration::new(py, finished, call)
 }
 
 /// The energies, by name.

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A finished registration of any kind, on which the methods of the Python class call the core.
 
-use authalic::{Correspondence, CurveRegistration, DiskRegistration, Error, Observer, SphereRegistration};
+use authalic::{
+    Correspondence, CurveRegistration, DiskRegistration, Error, Observer, Recorded, SphereRegistration, Tree,
+};
+
+use pyo3::Python;
+
+use crate::provenance::{Call, Options, fingerprint};
 
 pub enum Finished {
     Disk(DiskRegistration),
@@ -26,6 +32,42 @@ impl Finished {
             Self::Sphere(registration) => registration.strain(),
             Self::Curves(registration) => registration.strain(),
         }
+    }
+
+    /// The call of a function that has returned this.
+    pub fn call(&self, py: Python<'_>, function: &'static str, options: &Options) -> Call {
+        let map = self.correspondence();
+        let inputs =
+            py.detach(|| vec![("source", fingerprint(map.source())), ("target", fingerprint(map.target()))]);
+        Call { function, options: options.clone(), inputs }
+    }
+
+    /// Signs that curves are wrong.
+    pub fn warnings(&self) -> &[authalic::Warning] {
+        match self {
+            Self::Curves(registration) => &registration.warnings,
+            _ => &[],
+        }
+    }
+
+    /// The registration as named arrays, without its warnings.
+    pub fn record(&self) -> Tree {
+        let (kind, content) = match self {
+            Self::Disk(registration) => ("disk", registration.record()),
+            Self::Sphere(registration) => ("sphere", registration.record()),
+            Self::Curves(registration) => ("curves", registration.record()),
+        };
+        Tree::new().with("kind", kind).with("content", content)
+    }
+
+    /// The registration of such arrays.
+    pub fn of_record(record: &Tree) -> Result<Self, Error> {
+        let content = record.tree("content")?;
+        Ok(match record.text("kind")? {
+            "disk" => Self::Disk(Recorded::of_record(content)?),
+            "sphere" => Self::Sphere(Recorded::of_record(content)?),
+            _ => Self::Curves(Box::new(Recorded::of_record(content)?)),
+        })
     }
 
     pub fn inverse(&self, observer: &mut dyn Observer) -> Result<Self, Error> {

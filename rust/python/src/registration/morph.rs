@@ -4,7 +4,7 @@
 use pyo3::prelude::*;
 
 use super::result::Registration;
-use crate::arrays::{Reals, from_array, real_table};
+use crate::arrays::{Reals, own_array, real_table};
 use crate::run::run;
 use crate::surface::handle;
 
@@ -61,5 +61,5 @@ pub fn homotopy(
     };
     let morphed =
         run(py, None, move |_| authalic::homotopy(vertices.view(), finished.correspondence(), t, align))?;
-    Ok(from_array(py, morphed))
+    Ok(own_array(py, morphed))
 }

@@ -10,6 +10,7 @@ use super::result::Registration;
 use super::surfaces::{SOURCE, TARGET, checked};
 use crate::indices::index_list;
 use crate::options::choice;
+use crate::provenance::options;
 use crate::run::run_with_preview;
 use crate::surface::Given;
 
@@ -114,7 +115,11 @@ pub fn register_disks(
     fill_holes: bool,
     progress: Option<&Bound<'_, PyAny>>,
     preview: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Registration> {
+) -> PyResult<Py<Registration>> {
+    let kept = options!(
+        py; source_landmarks, target_landmarks, energy, weight, area_weight, angle_weight, weights, features,
+        feature_weight, position_weight, fill_holes
+    )?;
     let energy = choice("energy", energy, &ENERGIES)?;
     let options = RegistrationOptions {
         energy,
@@ -134,7 +139,8 @@ pub fn register_disks(
     let finished = run_with_preview(py, progress, preview, move |observer| {
         arguments.register(authalic::register_disks, observer).map(Finished::Disk)
     })?;
-    Registration::new(py, finished)
+    let call = finished.call(py, "register_disks", &kept);
+    Registration::new(py, finished, call)
 }
 
 /// Registers two closed surfaces by landmarks or features.
@@ -235,7 +241,11 @@ pub fn register_spheres(
     fill_holes: bool,
     progress: Option<&Bound<'_, PyAny>>,
     preview: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Registration> {
+) -> PyResult<Py<Registration>> {
+    let kept = options!(
+        py; source_landmarks, target_landmarks, energy, weight, area_weight, angle_weight, weights, features,
+        feature_weight, position_weight, fill_holes
+    )?;
     let energy = choice("energy", energy, &ENERGIES)?;
     let options = RegistrationOptions {
         energy,
@@ -255,7 +265,8 @@ pub fn register_spheres(
     let finished = run_with_preview(py, progress, preview, move |observer| {
         arguments.register(authalic::register_spheres, observer).map(Finished::Sphere)
     })?;
-    Registration::new(py, finished)
+    let call = finished.call(py, "register_spheres", &kept);
+    Registration::new(py, finished, call)
 }
 
 /// The energies, by name.

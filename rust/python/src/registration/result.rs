@@ -7,20 +7,24 @@ use authalic::{Corner, Correspondence, DiskMap, Error, History, RoughSphere, Sph
 use numpy::ndarray::{Array1, Array2, Array3, ArrayView2, aview1};
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::certificates::Certificates;
 use super::finished::{Finished, Per};
 use super::strain::Strain;
-use crate::arrays::{Reals, from_array, real_table};
+use crate::arrays::{Reals, from_array, frozen, own_array, real_table};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, to_python, warning};
 use crate::indices::{from_index_list, from_indices, integer_list};
+use crate::provenance::Call;
+use crate::record::{from_dictionary, to_dictionary};
+use crate::result::{Restorable, ResultBase, State, made};
 use crate::run::run;
 use crate::values::{Values, from_values};
 use crate::{disk, sphere};
 
 /// A one-to-one map of a source surface onto a target that takes landmarks to landmarks.
-#[pyclass(frozen, module = "authalic")]
+#[pyclass(frozen, extends = ResultBase, module = "authalic")]
 pub struct Registration {
     /// (n, 3) float64: g(v), the place of each source vertex on the target, in the target's coordinates.
     #[pyo3(get)]
@@ -127,23 +131,29 @@ pub struct Registration {
 }
 
 impl Registration {
-    pub(super) fn new(py: Python<'_>, finished: Finished) -> PyResult<Self> {
+    /// The result for Python, and what it was computed from.
+    pub(super) fn new(py: Python<'_>, finished: Finished, call: Call) -> PyResult<Py<Self>> {
+        let warnings = finished.warnings();
+        let warnings = warnings.iter().map(|sign| warning(py, sign)).collect::<PyResult<_>>()?;
+        made(py, Self::of(py, finished, warnings)?, call.into())
+    }
+
+    fn of(py: Python<'_>, finished: Finished, warnings: Vec<Py<PyAny>>) -> PyResult<Self> {
         let map = finished.correspondence();
         let (faces, target_faces) = (map.faces(), map.target_faces());
         let [registered, target_registered] = in_domain(&finished).map(|array| from_array(py, array));
         let [source_map, target_map] = maps(py, &finished, [faces.view(), target_faces.view()])?;
         let figures = Figures::of(&finished);
-        let (certificates, warnings, energies) = match &finished {
+        let (certificates, energies) = match &finished {
             Finished::Curves(curves) => (
-                Some(Py::new(py, Certificates::new(py, &curves.certificates))?),
-                curves.warnings.iter().map(|sign| warning(py, sign)).collect::<PyResult<_>>()?,
+                Some(Certificates::new(py, &curves.certificates)?),
                 curves
                     .descents
                     .iter()
-                    .map(|descent| PyArray1::from_slice(py, &descent.energies).unbind())
+                    .map(|descent| frozen(PyArray1::from_slice(py, &descent.energies)))
                     .collect(),
             ),
-            _ => (None, Vec::new(), Vec::new()),
+            _ => (None, Vec::new()),
         };
         let area_ratio = map.area_ratio();
         Ok(Self {
@@ -161,11 +171,11 @@ impl Registration {
             off_boundary: from_index_list(py, figures.off_boundary.iter().copied()),
             in_holes: from_index_list(py, map.in_holes().iter().copied()),
             status: figures.status.as_str(),
-            distortion: Py::new(py, Distortion::new(py, figures.distortion.clone()))?,
+            distortion: Distortion::new(py, figures.distortion.clone())?,
             area_distortion: from_array(py, area_ratio.mapv(|ratio| ratio.max(1.0 / ratio))),
             area_ratio: from_array(py, area_ratio),
-            strain: Py::new(py, Strain::new(py, finished.strain()))?,
-            target_distortion: Py::new(py, Distortion::new(py, figures.target_distortion.clone()))?,
+            strain: Strain::new(py, finished.strain())?,
+            target_distortion: Distortion::new(py, figures.target_distortion.clone())?,
             certificates,
             warnings,
             energies,
@@ -236,11 +246,12 @@ fn maps(
     [faces, target_faces]: [ArrayView2<'_, u32>; 2],
 ) -> PyResult<[Py<PyAny>; 2]> {
     let disk = |map: &DiskMap, faces| {
-        Ok::<_, PyErr>(Py::new(py, disk::DiskMap::new(py, map.clone(), faces)?)?.into_any())
+        Ok::<_, PyErr>(disk::DiskMap::new(py, map.clone(), faces, None, None)?.into_any())
     };
     let sphere = |map: &SphereMap, faces| {
         let on_sphere = map.faces_on_sphere(faces).map_err(|error| to_python(py, &error))?;
-        Ok::<_, PyErr>(Py::new(py, sphere::SphereMap::new(py, map.clone(), faces, on_sphere)?)?.into_any())
+        let map = sphere::SphereMap::new(py, map.clone(), faces, on_sphere, (None, None), None)?;
+        Ok::<_, PyErr>(map.into_any())
     };
     Ok(match finished {
         Finished::Disk(disks) => [disk(&disks.source_map, faces)?, disk(&disks.target_map, target_faces)?],
@@ -264,6 +275,17 @@ fn without_iterations(sphere: &RoughSphere) -> SphereMap {
         targets: sphere.targets.clone(),
         refinement: None,
         seconds: 0.0,
+    }
+}
+
+impl Restorable for Registration {
+    const FIELDS: &'static [&'static str] = &["warnings", "_record"];
+
+    fn restored(state: &State<'_>) -> PyResult<Self> {
+        let py = state.py();
+        let record = from_dictionary(&state.get("_record")?)?;
+        let finished = Finished::of_record(&record).map_err(|error| to_python(py, &error))?;
+        Self::of(py, finished, state.get("warnings")?)
     }
 }
 
@@ -407,7 +429,7 @@ impl Registration {
         let places = run(py, None, move |_| {
             authalic::follow(finished.correspondence(), points.view(), aview1(&pieces), rigid_size)
         })?;
-        Ok(from_array(py, places))
+        Ok(own_array(py, places))
     }
 
     /// How vectors on the target are turned and scaled on their way to the source.
@@ -434,7 +456,7 @@ impl Registration {
     /// [0.333, 0.333, 0.333]
     fn local_similarities(&self, py: Python<'_>) -> PyResult<Py<PyArray3<f64>>> {
         let finished = self.finished.clone();
-        Ok(from_array(py, run(py, None, move |_| finished.correspondence().local_similarities())?))
+        Ok(own_array(py, run(py, None, move |_| finished.correspondence().local_similarities())?))
     }
 
     /// The registration of the target onto the source by the same maps. Its `pull` carries source data to the target.
@@ -454,9 +476,19 @@ impl Registration {
     /// ... )
     /// >>> registration.inverse().positions.max().round(6).item()
     /// 1.0
-    fn inverse(&self, py: Python<'_>) -> PyResult<Self> {
-        let finished = self.finished.clone();
-        Self::new(py, run(py, None, move |observer| finished.inverse(observer))?)
+    fn inverse(slf: &Bound<'_, Self>) -> PyResult<Py<Self>> {
+        let (py, this) = (slf.py(), slf.get());
+        let finished = this.finished.clone();
+        let inverse = run(py, None, move |observer| finished.inverse(observer))?;
+        let warnings = this.warnings.iter().map(|sign| sign.clone_ref(py)).collect();
+        let origin = slf.as_super().get().origin().map(|origin| origin.again(py));
+        made(py, Self::of(py, inverse, warnings)?, origin)
+    }
+
+    /// All that makes the registration, for saved ones.
+    #[getter]
+    fn _record<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        to_dictionary(py, &self.finished.record())
     }
 
     /// The agreement of scalars of both surfaces through the map, weighted by area on the source.

@@ -5,11 +5,12 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::from_array;
+use crate::result::{ResultBase, made, restorable};
 
 /// How far a registration stretches and shrinks each face, with both surfaces scaled to one area.
 ///
 /// Means and shares are by area of the source.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, get_all, extends = ResultBase, module = "authalic")]
 pub struct Strain {
     /// (m, 2) float64: the singular values σ₁ ≥ σ₂ of g on each source face.
     sigma: Py<PyArray2<f64>>,
@@ -30,8 +31,8 @@ pub struct Strain {
 }
 
 impl Strain {
-    pub(super) fn new(py: Python<'_>, strain: authalic::Strain) -> Self {
-        Self {
+    pub(super) fn new(py: Python<'_>, strain: authalic::Strain) -> PyResult<Py<Self>> {
+        let strain = Self {
             sigma: from_array(py, strain.sigma),
             symmetric_dirichlet: from_array(py, strain.symmetric_dirichlet),
             mean: strain.mean,
@@ -39,9 +40,12 @@ impl Strain {
             p95: strain.p95,
             stretched: strain.stretched,
             worst_landmark: strain.worst_landmark,
-        }
+        };
+        made(py, strain, None)
     }
 }
+
+restorable!(Strain { sigma, symmetric_dirichlet, mean, median, p95, stretched, worst_landmark });
 
 #[pymethods]
 impl Strain {

@@ -123,7 +123,7 @@ fn weighted(z: Complex) -> Vector3 {
 ///
 /// They grow outward from the domain: of all neighbors of earlier copies, across copies of arcs, the one whose middle
 /// is nearest to the origin comes next.
-pub(super) fn cover(generators: &[Moebius], count: usize) -> Vec<CoverCopy> {
+pub fn cover(generators: &[Moebius], count: usize) -> Vec<CoverCopy> {
     let letters: Vec<i32> = (1..=generators.len() as i32).flat_map(|k| [k, -k]).collect();
     let motion = |letter: i32| {
         let generator = generators[letter.unsigned_abs() as usize - 1];

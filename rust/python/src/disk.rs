@@ -151,7 +151,7 @@ impl DiskMap {
     ///
     /// Parameters
     /// ----------
-    /// triangles : (k,) integer array
+    /// triangles : (k,) int array
     ///     Faces; -1 for no place.
     /// barycentric : (k, 3) real array
     ///     The weights of their corners.

@@ -117,11 +117,11 @@ where
 
 #[pymethods]
 impl ResultBase {
-    /// dict or None: what the result was computed from.
+    /// What the result was computed from: a dict, or None for a part of a result, and for surfaces.
     ///
     /// It has the name of the `function`, its `options`, the SHA-256 of each surface among its `inputs`, and the
     /// versions of `authalic`, `numpy`, `python` and the `platform`. Arrays among the options stand as their shape,
-    /// dtype and SHA-256. None for what is a part of a result, and for surfaces.
+    /// dtype and SHA-256.
     #[getter]
     fn provenance(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
         self.origin.as_ref().map(|origin| origin.dictionary(py)).transpose()

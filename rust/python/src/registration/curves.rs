@@ -132,7 +132,7 @@ pub fn register_hyperbolic(
 ) -> PyResult<Py<Registration>> {
     let kept = options!(
         py; source_curves, target_curves, energy, area_weight, angle_weight, features, feature_weight, position_weight,
-        metric, solver, max_iterations, tolerance, source_sphere, target_sphere
+        fill_holes, metric, solver, max_iterations, tolerance, source_sphere, target_sphere
     )?;
     let mut options = HyperbolicOptions {
         energy: choice("energy", energy, &ENERGIES)?,

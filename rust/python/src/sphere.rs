@@ -17,7 +17,7 @@ use crate::indices::{from_index_list, from_indices, index_table, narrowed};
 use crate::layout::{Arguments, Layout, layout};
 use crate::lookup::{Beyond, Invertible, Lookup, Request, image_of, locate};
 use crate::options::{history, parse_iterations};
-use crate::provenance::{Call, Origin, fingerprint, options};
+use crate::provenance::{Call, Origin, options};
 use crate::repair::{Prepared, Repaired, check_no_start};
 use crate::result::{Restorable, ResultBase, State, made, restorable};
 use crate::run::run;

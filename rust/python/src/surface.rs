@@ -5,6 +5,7 @@ use authalic::{Error, RepairOptions, Topology, Vertex};
 use numpy::ndarray::{Array2, Axis, aview2, concatenate};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyTypeError;
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 

@@ -74,7 +74,7 @@ fn vtk_faces<'py>(faces: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
 
 /// Whether numbers are triangles in VTK's layout.
 pub fn is_vtk(flat: ArrayView1<'_, i64>) -> bool {
-    flat.len() % 4 == 0 && flat.iter().step_by(4).all(|&length| length == 3)
+    flat.len().is_multiple_of(4) && flat.iter().step_by(4).all(|&length| length == 3)
 }
 
 fn no_triangles(py: Python<'_>, found: &str) -> PyErr {

@@ -21,7 +21,7 @@ use super::draft::Draft;
 use super::options::CloseHandles;
 use super::pieces::Pieces;
 use closed::ClosedMesh;
-use crossing::shortest_crossing;
+use crossing::CrossingSearch;
 use generators::generators;
 use loops::Loop;
 use surgery::{cut_open, shortest_apart};
@@ -42,10 +42,11 @@ pub(super) fn close_handles(draft: &mut Draft, pieces: &Pieces, which: CloseHand
         let mesh = ClosedMesh::new(draft);
         let generators = generators(&mesh);
         // 2. Short loops
+        let mut search = CrossingSearch::new(&mesh);
         let candidates = generators.iter().flat_map(|generator| {
             let limit = piece_of(&mesh, pieces, generator).map_or(0.0, |piece| limits[piece]);
-            let across = shortest_crossing(&mesh, generator, limit);
-            let along = across.as_ref().and_then(|across| shortest_crossing(&mesh, across, limit));
+            let across = search.shortest(generator, limit);
+            let along = across.as_ref().and_then(|across| search.shortest(across, limit));
             [across, along].into_iter().flatten()
         });
         // 3. Cuts

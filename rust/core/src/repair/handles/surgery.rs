@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Cuts a surface along loops and closes both sides of each.
 
+use std::collections::VecDeque;
+
 use super::closed::ClosedMesh;
 use super::crossing::{Sector, sectors};
 use super::loops::Loop;
 use crate::mesh::{Corner, Vertex};
 use crate::repair::draft::Draft;
 use crate::repair::holes::close;
-use crate::sets::Sets;
 
 /// The shortest of some loops that do not meet and together do not divide the surface.
 pub(super) fn shortest_apart(mesh: &ClosedMesh, mut loops: Vec<Loop>) -> Vec<Loop> {
     loops.sort_by(|a, b| a.length.total_cmp(&b.length).then_with(|| a.vertices.cmp(&b.vertices)));
     let mut is_taken = vec![false; mesh.points.len()];
-    let mut is_cut = vec![false; 3 * mesh.faces.len()];
-    let whole = n_parts(mesh, &is_cut);
+    let mut floods = Floods::new(mesh);
     loops.retain(|each| {
         if each.vertices.iter().any(|&vertex| is_taken[vertex]) || has_repeats(&each.vertices) {
             return false;
         }
         let edges = edges(mesh, &each.vertices);
-        edges.iter().for_each(|&corner| is_cut[corner] = true);
-        let divides = n_parts(mesh, &is_cut) > whole;
+        edges.iter().for_each(|&corner| floods.is_cut[corner] = true);
+        let divides = floods.are_apart(edges[0]);
         if divides {
-            edges.iter().for_each(|&corner| is_cut[corner] = false);
+            edges.iter().for_each(|&corner| floods.is_cut[corner] = false);
         } else {
             each.vertices.iter().for_each(|&vertex| is_taken[vertex] = true);
         }
@@ -50,29 +50,58 @@ fn edges(mesh: &ClosedMesh, vertices: &[Vertex]) -> Vec<Corner> {
     beside.flatten().collect()
 }
 
-/// The number of parts that a surface falls into along edges.
-fn n_parts(mesh: &ClosedMesh, is_cut: &[bool]) -> usize {
-    let mut faces = Sets::new(mesh.faces.len());
-    let uncut = Corner::all(mesh.faces.len()).filter(|&corner| !is_cut[corner]);
-    let joins = uncut.filter(|&corner| {
-        let across = mesh.opposite[corner].filter(|&across| across > corner);
-        across.is_some_and(|across| faces.join(corner.face().index(), across.face().index()))
-    });
-    mesh.faces.len() - joins.count()
+/// Floods of a surface that is cut along edges.
+struct Floods<'a> {
+    mesh: &'a ClosedMesh,
+    /// Whether the edge opposite to each corner is cut.
+    is_cut: Vec<bool>,
+    /// The last flood that reached each face.
+    flood_of: Vec<u32>,
+    n_floods: u32,
+}
+
+impl<'a> Floods<'a> {
+    fn new(mesh: &'a ClosedMesh) -> Self {
+        let (is_cut, flood_of) = (vec![false; 3 * mesh.faces.len()], vec![0; mesh.faces.len()]);
+        Self { mesh, is_cut, flood_of, n_floods: 0 }
+    }
+
+    /// Whether no path leads from one side of a cut edge to the other. Floods from both sides take turns, so that the
+    /// cost is that of the nearer end.
+    fn are_apart(&mut self, cut: Corner) -> bool {
+        let floods = [self.n_floods + 1, self.n_floods + 2];
+        self.n_floods += 2;
+        let Some(across) = self.mesh.opposite[cut] else { return true };
+        let mut pending = [cut, across].map(|corner| VecDeque::from([corner.face()]));
+        self.flood_of[cut.face()] = floods[0];
+        self.flood_of[across.face()] = floods[1];
+        loop {
+            for side in [0, 1] {
+                let Some(face) = pending[side].pop_front() else { return true };
+                for corner in face.corners().into_iter().filter(|&corner| !self.is_cut[corner]) {
+                    let Some(neighbor) = self.mesh.opposite[corner].map(Corner::face) else { continue };
+                    if self.flood_of[neighbor] == floods[1 - side] {
+                        return false;
+                    }
+                    if self.flood_of[neighbor] != floods[side] {
+                        self.flood_of[neighbor] = floods[side];
+                        pending[side].push_back(neighbor);
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// Cuts a surface open along a loop and closes both sides.
 pub(super) fn cut_open(draft: &mut Draft, mesh: &ClosedMesh, vertices: &[Vertex]) {
     let Some(sectors) = sectors(mesh, vertices) else { return };
-    // 1. The right side gets copies of the vertices
+    // 1. The right side gets copies of the vertices; a face lies counter-clockwise from the edge that leaves at its corner
     let copies: Vec<Vertex> = vertices.iter().map(|&vertex| draft.copy_vertex(vertex)).collect();
-    for (&vertex, &copy) in vertices.iter().zip(&copies) {
-        for &corner in mesh.corners.of(vertex) {
-            // the face lies counter-clockwise from the edge that leaves at its corner
-            if matches!(sectors.get(&corner), Some(Sector::Behind | Sector::Right)) {
-                draft.set_corner(corner, copy);
-            }
-        }
+    let is_right = |sector: &Sector| matches!(sector, Sector::Behind | Sector::Right);
+    for (corner, _) in sectors.iter().filter(|(_, sector)| is_right(sector)) {
+        let place = vertices.iter().position(|&vertex| vertex == corner.vertex(&mesh.faces));
+        place.into_iter().for_each(|place| draft.set_corner(*corner, copies[place]));
     }
     // 2. The left side has the surface on the left of the loop, the right side on that of its reverse
     let reversed: Vec<Vertex> = copies.into_iter().rev().collect();

@@ -14,7 +14,7 @@ from pictures import draw_map, hills
 import authalic
 
 surface = authalic.Surface(*hills(900))
-uv = authalic.disk_map(surface).uv
+uv = authalic.disk_map(surface).uv.copy()
 near = np.linalg.norm(uv - [0.2, 0.1], axis=1) < 0.25
 uv[near] += np.random.default_rng(1).normal(0, 0.1, (near.sum(), 2))
 

@@ -175,6 +175,19 @@ def test_points_inside_a_closed_surface_are_not_merged_with_others():
     assert not authalic.repair(*two).is_changed
 
 
+def test_points_that_touch_without_an_edge_in_common_are_not_merged():
+    """Two squares with one corner at the same place, and a square beside the first that shares a side."""
+    square = meshes.single_quad()
+    moved = [square.vertices * [1, 1, 0] + shift for shift in ([0, 0, 0], [1, 1, 0], [-1, 0, 0])]
+    given = meshes.Mesh(np.vstack(moved), np.vstack([square.faces + 4 * k for k in range(3)]))
+    repaired = authalic.repair(*given)
+    assert repaired.counts["merged_points"] == 2
+    assert repaired.counts["split_vertices"] == 0
+    assert n_pieces(repaired.faces) == 2
+    assert np.array_equal(repaired.vertices, np.delete(given.vertices, [9, 10], axis=0))
+    assert not authalic.repair(repaired).is_changed
+
+
 def test_vertices_that_are_no_numbers_go_and_the_hole_is_closed():
     mesh = meshes.bumpy_ball(3)
     vertices = mesh.vertices.copy()

@@ -12,6 +12,11 @@ impl Sets {
         Self { parent: (0..n as u32).collect() }
     }
 
+    /// How many numbers there are.
+    pub(crate) fn len(&self) -> usize {
+        self.parent.len()
+    }
+
     /// The root of the set of a number.
     pub(crate) fn root(&mut self, member: usize) -> usize {
         let mut member = member as u32;

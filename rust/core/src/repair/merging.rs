@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Merges points of open edges that are equal, or near each other.
+//! Merges the points of open edges that lie on each other, or near each other.
 //!
-//! Points around which the surface is closed stay apart from all others: merged with them they would be points at which
-//! parts of the surface only touch. Points are sorted into cells as wide as the distance; those of neighboring cells are
-//! compared. Cost: O(n log n) for points of which few are near each other.
+//! Points where the surface is closed, and points that touch without an edge in common, stay apart: merged they would be
+//! points at which parts of the surface only touch. Points are sorted into cells as wide as the distance; those of
+//! neighboring cells are compared. Cost: O(n log n) for points of which few are near each other.
 
 use super::draft::Draft;
 use crate::mesh::{EdgeTable, Vertex};
@@ -12,29 +12,51 @@ use crate::vector::Vector3;
 
 /// Merges points no farther apart than `distance`; returns the number of points that vanish.
 pub(super) fn merge_points(draft: &mut Draft, distance: f64) -> usize {
-    // 1. The points of open edges
-    let open = open_points(draft);
+    // 1. Edges with a single face, and their points
+    let table = EdgeTable::new(draft.points.len(), &draft.faces);
+    let open = table.edges().filter(|(_, corners)| corners.len() == 1);
+    let edges: Vec<[Vertex; 2]> = open.map(|(ends, _)| ends).collect();
+    let mut points: Vec<Vertex> = edges.as_flattened().to_vec();
+    points.sort_unstable();
+    points.dedup();
     // 2. Sets of points that are near each other
-    let mut sets = Sets::new(draft.points.len());
+    let mut near = Sets::new(draft.points.len());
     if distance > 0.0 {
-        join_near(&draft.points, &open, distance, &mut sets);
+        join_near(&draft.points, &points, distance, &mut near);
     } else {
-        join_equal(&draft.points, &open, &mut sets);
+        join_equal(&draft.points, &points, &mut near);
     }
-    let roots: Vec<Vertex> = (0..draft.points.len()).map(|v| Vertex::new(sets.root(v))).collect();
-    // 3. The first of each stays
+    // 3. The ends of edges that lie on each other
+    let mut merged = join_ends(&edges, &mut near);
+    let roots: Vec<Vertex> = (0..draft.points.len()).map(|v| Vertex::new(merged.root(v))).collect();
+    // 4. The first of each stays
     draft.join_vertices(|vertex| roots[vertex]);
     roots.iter().enumerate().filter(|(vertex, root)| root.index() != *vertex).count()
 }
 
-/// The vertices of edges with a single face.
-fn open_points(draft: &Draft) -> Vec<Vertex> {
-    let mut is_open = vec![false; draft.points.len()];
-    let table = EdgeTable::new(draft.points.len(), &draft.faces);
-    for (ends, _) in table.edges().filter(|(_, corners)| corners.len() == 1) {
-        ends.into_iter().for_each(|vertex| is_open[vertex] = true);
+/// The points that open edges have in common, as sets: edges whose ends are near each other, or an edge that is shorter
+/// than the distance.
+fn join_ends(edges: &[[Vertex; 2]], near: &mut Sets) -> Sets {
+    let mut placed: Vec<([usize; 2], [Vertex; 2])> = edges
+        .iter()
+        .map(|&[a, b]| match [a, b].map(|end| near.root(end.index())) {
+            [first, second] if first > second => ([second, first], [b, a]),
+            places => (places, [a, b]),
+        })
+        .collect();
+    placed.sort_unstable();
+    let mut merged = Sets::new(near.len());
+    for edges in placed.chunk_by(|one, next| one.0 == next.0) {
+        let [([start, end], [first, last]), ..] = edges else { continue };
+        if start == end {
+            merged.join(first.index(), last.index());
+        }
+        for (_, [a, b]) in edges {
+            merged.join(first.index(), a.index());
+            merged.join(last.index(), b.index());
+        }
     }
-    Vertex::all(draft.points.len()).filter(|&vertex| is_open[vertex]).collect()
+    merged
 }
 
 fn join_equal(points: &[Vector3], open: &[Vertex], sets: &mut Sets) {

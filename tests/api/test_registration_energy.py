@@ -44,7 +44,7 @@ def test_the_options_have_the_defaults_of_the_contract(call):
     assert {name: parameters[name].default for name in OPTIONS} == OPTIONS
     of_curves = inspect.signature(authalic.register_hyperbolic).parameters
     assert of_curves["energy"].default == "surface"
-    assert set(OPTIONS) - set(of_curves) == {"weight", "weights", "fill_holes"}
+    assert set(OPTIONS) - set(of_curves) == {"weight", "weights"}
 
 
 @both

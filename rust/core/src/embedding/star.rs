@@ -40,28 +40,28 @@ pub(super) struct Star {
 
 /// A face at the vertex.
 #[derive(Debug, Clone, Copy)]
-struct Face {
+pub(super) struct Face {
     /// The ends of the edge opposite to the vertex.
-    ends: [Vector3; 2],
+    pub(super) ends: [Vector3; 2],
     middle: Vector3,
     /// Three halves of the squared length of that edge.
     length: f64,
     /// ∇D.
-    normal: Vector3,
+    pub(super) normal: Vector3,
     /// This times the 1-norm of x − p bounds the rounding error of D.
     rounding: f64,
     target: f64,
 }
 
 /// The derivatives of the energy in coordinates along a basis.
-struct Derivatives {
-    gradient: [f64; 2],
+pub(super) struct Derivatives {
+    pub(super) gradient: [f64; 2],
     /// [[a, b], [b, c]] as [a, b, c].
-    hessian: [f64; 3],
+    pub(super) hessian: [f64; 3],
 }
 
 impl Face {
-    fn new(p: Vector3, q: Vector3, target: f64) -> Self {
+    pub(super) fn new(p: Vector3, q: Vector3, target: f64) -> Self {
         let edge = q - p;
         let product = |i: usize, j: usize| (p[i] * edge[j]).abs() + (p[j] * edge[i]).abs();
         Self {
@@ -75,7 +75,7 @@ impl Face {
     }
 
     /// D where it is clearly positive.
-    fn determinant(&self, x: Vector3) -> Option<f64> {
+    pub(super) fn determinant(&self, x: Vector3) -> Option<f64> {
         let spoke = x - self.ends[0];
         let determinant = self.normal.dot(spoke);
         let size = spoke[0].abs() + spoke[1].abs() + spoke[2].abs();
@@ -191,7 +191,7 @@ impl Star {
 
 impl Derivatives {
     /// The Newton direction with its slope, eigenvalues made positive; `None` where there is no descent.
-    fn newton_direction(&self) -> Option<([f64; 2], f64)> {
+    pub(super) fn newton_direction(&self) -> Option<([f64; 2], f64)> {
         let (g, [a, b, c]) = (self.gradient, self.hessian);
         let (mean, half) = (0.5 * (a + c), 0.5 * (a - c));
         let radius = (half * half + b * b).sqrt();

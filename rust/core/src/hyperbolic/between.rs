@@ -51,8 +51,10 @@ impl Between<'_, '_> {
             held,
             pulls: Vec::new(),
             signals,
+            is_refined: false,
             face_energy: FaceEnergy { area_weight, angle_weight },
         };
-        descend(&problem, start, history, observer)
+        let descended = descend(&problem, start, history, observer);
+        (descended.locations, descended.status)
     }
 }

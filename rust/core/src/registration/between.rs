@@ -4,7 +4,7 @@
 use super::Landmarks;
 use super::features::Signals;
 use super::options::RegistrationOptions;
-use super::surface::{Pull, SurfaceProblem, descend};
+use super::surface::{Descended, Pull, SurfaceProblem, descend};
 use crate::codomain::CanonicalDomain;
 use crate::control::{History, Observer, Status};
 use crate::location::{Location, points_on};
@@ -24,17 +24,30 @@ pub(super) struct Between<'a, 'f> {
     pub landmarks: &'a Landmarks<'a>,
     pub signals: Signals,
     pub options: &'a RegistrationOptions<'f>,
+    /// Whether they come from coarse meshes that are registered.
+    pub is_refined: bool,
+}
+
+/// Two surfaces after the descent.
+pub(super) struct Lowered {
+    /// The locations of the source on the target.
+    pub locations: Vec<Location>,
+    /// The source's vertices in the domain.
+    pub registered: Vec<Vector3>,
+    /// The energy between the surfaces, 1 for an isometry.
+    pub energy: f64,
+    pub status: Status,
 }
 
 impl Between<'_, '_> {
-    /// The locations of the source on the target after the descent, and its vertices in the domain.
+    /// The surfaces after the descent.
     pub(super) fn lower(
         self,
         start: Vec<Location>,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Vec<Location>, Vec<Vector3>, Status) {
-        let Self { source, target, target_points, domain, target_in_domain, options, .. } = self;
+    ) -> Lowered {
+        let Self { source, target, target_points, domain, target_in_domain, options, is_refined, .. } = self;
         let (held, pulls) = self.held_and_pulled();
         let mut signals = self.signals;
         if options.position_weight > 0.0 {
@@ -51,11 +64,12 @@ impl Between<'_, '_> {
             held,
             pulls,
             signals,
+            is_refined,
             face_energy,
         };
-        let (locations, status) = descend(&problem, start, history, observer);
+        let Descended { locations, energy, status } = descend(&problem, start, history, observer);
         let registered = in_domain(&locations, target.faces(), target_in_domain, domain);
-        (locations, registered, status)
+        Lowered { locations, registered, energy, status }
     }
 
     /// The exact landmarks of the source, which stay, and the soft ones, which are pulled.

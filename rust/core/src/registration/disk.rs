@@ -103,8 +103,10 @@ pub fn register_disks(
             landmarks,
             signals,
             options,
+            is_refined: false,
         };
-        (locations, met.source, status) = between.lower(locations, &mut history, &mut phase);
+        let lowered = between.lower(locations, &mut history, &mut phase);
+        (locations, met.source, status) = (lowered.locations, lowered.registered, lowered.status);
     }
     // 8. Figures
     let error = |(&p, &q): (&usize, &usize)| met.source[p].distance(met.target[q]);

@@ -8,7 +8,7 @@ use ndarray::{ArrayView1, ArrayView2};
 
 use crate::alignment::similarity::similarity;
 use crate::error::{Elements, Error};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -66,6 +66,16 @@ impl Signals {
             }
         }
         Ok(signals)
+    }
+
+    /// The signals at some vertices of either surface.
+    pub(crate) fn at(&self, [source, target]: [&[Vertex]; 2]) -> Self {
+        let width = self.width;
+        let rows = |values: &[f64], vertices: &[Vertex]| {
+            let row = |&vertex: &Vertex| &values[width * vertex.index()..][..width];
+            vertices.iter().flat_map(row).copied().collect()
+        };
+        Self { width, source: rows(&self.source, source), target: rows(&self.target, target) }
     }
 
     /// Adds one signal, (n,) and (n_t,), times a factor.

@@ -13,6 +13,7 @@
 
 mod between;
 mod boundary;
+mod coarse_to_fine;
 pub(crate) mod correspondence;
 mod disk;
 mod feature_start;

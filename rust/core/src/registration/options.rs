@@ -7,12 +7,13 @@ use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::options::check_angle_weight;
 
-/// Angle weight of the two maps and of carrying the landmarks from which the descent between the surfaces starts: shapes
-/// that hardly change on the way to the domain leave it the least to mend.
-const START_ANGLE_WEIGHT: f64 = 100.0;
+/// Angle weights of the two maps and of carrying the landmarks from which the descent between the surfaces starts. With
+/// many landmarks the start is the better the less shapes change on the way to the domain, with few ones areas tell more
+/// of where the parts between them go.
+pub(super) const START_ANGLE_WEIGHTS: [f64; 2] = [100.0, 10.0];
 
 /// The share of the maps to the domain in the progress of a run whose descent between the surfaces follows.
-const SHARE_OF_DOMAIN: f64 = 0.4;
+pub(super) const SHARE_OF_DOMAIN: f64 = 0.4;
 
 /// What a registration by points keeps.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -139,7 +140,7 @@ impl RegistrationOptions<'_> {
     pub(super) fn angle_weight_in_domain(&self) -> f64 {
         match self.energy {
             Energy::Area => self.angle_weight.unwrap_or(0.0),
-            Energy::Surface => START_ANGLE_WEIGHT,
+            Energy::Surface => START_ANGLE_WEIGHTS[0],
         }
     }
 

@@ -30,9 +30,10 @@ pub struct Registration<Map> {
     /// The target's vertices in that domain: g on the disk, h₁∘f₁ on the sphere. On the disk they are moved only where
     /// moving the source's landmarks alone misses some.
     pub target_registered: Array2<f64>,
-    /// The map of the source alone.
+    /// The map of the source alone, from which the registration started; of large spheres the refined map of a coarse
+    /// mesh.
     pub source_map: Map,
-    /// The map of the target alone.
+    /// The map of the target alone, likewise.
     pub target_map: Map,
     /// The landmarks of source and target, as given.
     pub landmarks: [Vec<usize>; 2],

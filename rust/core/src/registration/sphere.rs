@@ -6,14 +6,17 @@
 
 use std::borrow::Cow;
 
-use super::between::Between;
+use super::between::{Between, Lowered};
+use super::coarse_to_fine::CoarsePair;
 use super::correspondence::{Correspondence, Registered, meshes};
 use super::feature_start::{OnSphere, aligned};
+use super::features::Signals;
 use super::filling::Filling;
 use super::landmark_descent::Carrying;
 use super::landmarks::{Landmarks, fewest};
-use super::options::{Energy, RegistrationOptions};
+use super::options::{Energy, RegistrationOptions, SHARE_OF_DOMAIN, START_ANGLE_WEIGHTS};
 use super::result::{CarryingOptions, Registration, SphereRegistration};
+use super::surface::ISOMETRY;
 use super::verdict::{located, missed, verdict, worst};
 use crate::alignment::rotation::{best_rotation, rotate};
 use crate::arrays::{from_vectors, vectors};
@@ -21,11 +24,11 @@ use crate::codomain::CanonicalDomain;
 use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::distortion::{Image, folded_on_sphere, measure};
 use crate::error::{Error, Side};
-use crate::location::Locator;
+use crate::location::{Location, Locator};
 use crate::mesh::geometry::{area_vector, triangle};
 use crate::mesh::{Surface, TriangleMesh};
 use crate::parallel;
-use crate::sphere::{SphereMapOptions, map_sphere};
+use crate::sphere::{SphereMap, SphereMapOptions, map_sphere};
 use crate::vector::Vector3;
 
 /// Two meeting places are too close below this part of the distance of their landmarks on either surface.
@@ -34,6 +37,9 @@ const CROWDED: f64 = 0.3;
 /// Angle weight of both maps where features alone lay the spheres over each other: maps that trade areas for angles lay
 /// like parts of two surfaces at like places of the sphere.
 const FEATURE_ANGLE_WEIGHT: f64 = 1.0;
+
+/// Distance up to which the landmarks of coarse meshes have met; else the whole surfaces are laid over each other.
+const MET: f64 = 1e-9;
 
 /// Weight, against that of a landmark, of the wish to rotate as little as possible.
 const LEAST_TURN: f64 = 1e-9;
@@ -86,71 +92,20 @@ pub fn register_spheres(
     options.check(landmarks.source.len())?;
     let signals = options.signals([source, target])?;
     let target = &*not_inside_out(target, source);
-    let mut in_domain = Phase { whole: observer, from: 0.0, to: options.share_of_domain() };
-    // 2. Both surfaces to the sphere
-    let is_laid_by_landmarks = landmarks.source.len() >= fewest(CanonicalDomain::Sphere);
-    let angle_weight =
-        if is_laid_by_landmarks { options.angle_weight_in_domain() } else { FEATURE_ANGLE_WEIGHT };
-    let alone = SphereMapOptions { angle_weight, ..Default::default() };
-    let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
-        map_sphere(mesh, &alone, observer).map_err(|error| error.of_surface(side))
-    };
-    let f0 = map(source, Side::Source, &mut Phase { whole: &mut in_domain, from: 0.0, to: 0.3 })?;
-    let f1 = map(target, Side::Target, &mut Phase { whole: &mut in_domain, from: 0.3, to: 0.6 })?;
-    // 3. The source turned by landmarks, and bent by features; the middle of each pair
-    let [on_sphere, target_on_sphere] = [&f0, &f1].map(|map| vectors(map.positions.view()));
-    let by_landmarks =
-        is_laid_by_landmarks.then(|| turned(source, on_sphere.clone(), landmarks, &target_on_sphere));
-    let (turned, start) = match by_landmarks {
-        Some(turned) if options.features.is_none() => (turned, Status::Converged),
-        by_landmarks => aligned(
-            OnSphere { mesh: source, map: &on_sphere },
-            OnSphere { mesh: target, map: &target_on_sphere },
-            &signals,
-            by_landmarks,
-            &pairs(landmarks, &on_sphere, &target_on_sphere),
-            &Watch::new(&mut in_domain, 0.6, "Aligning features"),
-        )?,
-    };
-    let places = meeting_places(&pairs(landmarks, &turned, &target_on_sphere));
-    // 4. h₀ and h₁: the landmarks of both carried to the middles
-    let carrying = |mesh, landmarks| Carrying {
-        mesh,
-        domain: CanonicalDomain::Sphere,
-        holds_boundary: false,
+    // 2. Both over each other on the sphere, and with the energy between them the descent
+    let pair = Pair {
+        meshes: [source, target],
+        target_points: &vectors(target_surface.vertices()),
         landmarks,
-        places: &places,
-        weight: options.weight,
-        angle_weight,
+        signals: &signals,
+        options,
     };
-    let mut phase = Phase { whole: &mut in_domain, from: 0.6, to: 0.75 };
-    let (mut registered, first) =
-        carrying(source, landmarks.source).carry(turned, &mut history, &mut phase)?;
-    let mut phase = Phase { whole: &mut in_domain, from: 0.75, to: 0.9 };
-    let (target_registered, second) =
-        carrying(target, landmarks.target).carry(target_on_sphere, &mut history, &mut phase)?;
-    // 5. h₁⁻¹: the locations of the source on the target
-    let mut phase = Phase { whole: &mut in_domain, from: 0.9, to: 1.0 };
-    let locator = Locator::new(&target_registered, target.faces());
-    let (mut locations, mut status) =
-        located(&locator, &registered, worst([start, first, second]), &mut phase)?;
-    // 6. The descent between the surfaces
-    if options.energy == Energy::Surface && status != Status::Cancelled {
-        let mut phase = Phase { whole: observer, from: options.share_of_domain(), to: 1.0 };
-        let target_points = vectors(target_surface.vertices());
-        let between = Between {
-            source,
-            target,
-            target_points: &target_points,
-            domain: CanonicalDomain::Sphere,
-            target_in_domain: &target_registered,
-            landmarks,
-            signals,
-            options,
-        };
-        (locations, registered, status) = between.lower(locations, &mut history, &mut phase);
-    }
-    // 7. Figures
+    let laid = match options.energy {
+        Energy::Area => pair.laid(options.angle_weight.unwrap_or(0.0), &mut history, observer)?,
+        Energy::Surface => pair.descended(&mut history, observer)?,
+    };
+    let Laid { maps: [f0, f1], registered: [registered, target_registered], locations, status, .. } = laid;
+    // 3. Figures
     let landmark_pairs = pairs(landmarks, &registered, &target_registered);
     let landmark_error: Vec<f64> = landmark_pairs.iter().map(|[p, q]| p.distance(*q)).collect();
     let missed = missed(landmarks, options, &landmark_error, target, &locations);
@@ -187,6 +142,198 @@ pub fn register_spheres(
         target_distortion,
         seconds: history.seconds(),
     })
+}
+
+/// Two spheres to lay over each other.
+#[derive(Clone, Copy)]
+struct Pair<'a, 'f> {
+    meshes: [&'a TriangleMesh; 2],
+    /// The target's vertices as given.
+    target_points: &'a [Vector3],
+    landmarks: &'a Landmarks<'a>,
+    signals: &'a Signals,
+    options: &'a RegistrationOptions<'f>,
+}
+
+/// Two spheres over each other.
+struct Laid {
+    /// f₀ and f₁.
+    maps: [SphereMap; 2],
+    /// h₀∘f₀ and h₁∘f₁.
+    registered: [Vec<Vector3>; 2],
+    /// The locations of the source on the target.
+    locations: Vec<Location>,
+    /// The energy between the surfaces; infinite before the descent.
+    energy: f64,
+    status: Status,
+}
+
+impl Pair<'_, '_> {
+    /// Lays the spheres over each other so that the energy between them is low: from coarse meshes where they are large,
+    /// else the best of several starts.
+    fn descended(&self, history: &mut History, observer: &mut dyn Observer) -> Result<Laid, Error> {
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.5 };
+        if let Some(laid) = self.laid_coarse_to_fine(history, &mut phase)? {
+            let mut phase = Phase { whole: observer, from: 0.5, to: 1.0 };
+            return Ok(self.lowered(laid, true, history, &mut phase));
+        }
+        let weights =
+            if self.is_laid_by_landmarks() { &START_ANGLE_WEIGHTS[..] } else { &[FEATURE_ANGLE_WEIGHT] };
+        let mut best: Option<Laid> = None;
+        for (k, &angle_weight) in weights.iter().enumerate() {
+            let share = |k: usize| k as f64 / weights.len() as f64;
+            let mut phase = Phase { whole: observer, from: share(k), to: share(k + 1) };
+            let mut in_domain = Phase { whole: &mut phase, from: 0.0, to: SHARE_OF_DOMAIN };
+            let laid = match self.laid(angle_weight, history, &mut in_domain) {
+                Err(Error::CancelledEarly) if best.is_some() => break,
+                laid => laid?,
+            };
+            let mut phase = Phase { whole: &mut phase, from: SHARE_OF_DOMAIN, to: 1.0 };
+            let laid = self.lowered(laid, false, history, &mut phase);
+            let is_last = laid.status == Status::Cancelled || laid.energy < 1.0 + ISOMETRY;
+            if best.as_ref().is_none_or(|best| laid.energy < best.energy) {
+                best = Some(laid);
+            }
+            if is_last {
+                break;
+            }
+        }
+        Ok(best.expect("there is a start"))
+    }
+
+    /// Lays coarse meshes of the spheres over each other, and takes their maps to the whole; `None` where the spheres are
+    /// small, or where the landmarks of the coarse meshes do not meet.
+    fn laid_coarse_to_fine(
+        &self,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<Option<Laid>, Error> {
+        let domain = CanonicalDomain::Sphere;
+        // 1. Coarse meshes
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.1 };
+        let Some(coarse) = CoarsePair::new(self.meshes, self.landmarks, &mut phase)? else { return Ok(None) };
+        let meshes = coarse.meshes();
+        let (landmarks, signals) = (coarse.landmarks(), coarse.signals(self.signals));
+        let target_points = meshes[1].points();
+        let pair = Pair { meshes, target_points, landmarks: &landmarks, signals: &signals, ..*self };
+        // 2. Over each other
+        let mut phase = Phase { whole: observer, from: 0.1, to: 0.9 };
+        let mut unseen = |fraction: f64, message: &str| phase.progress(fraction, message);
+        let laid = pair.descended(history, &mut unseen)?;
+        let [ours, theirs] = &laid.registered;
+        if pairs(&landmarks, ours, theirs).iter().any(|[p, q]| p.distance(*q) > MET) {
+            return Ok(None);
+        }
+        // 3. Taken to the whole
+        let [f0, f1] = [&laid.maps[0], &laid.maps[1]].map(|map| vectors(map.positions.view()));
+        let of_maps = coarse.refined([&f0, &f1], domain);
+        let of_registered = coarse.refined([&laid.registered[0], &laid.registered[1]], domain);
+        let (Some([f0, f1]), Some(registered)) = (of_maps, of_registered) else { return Ok(None) };
+        let status = laid.status;
+        let of_positions = |k: usize, map: Vec<Vector3>| SphereMap::of_positions(self.meshes[k], map, status);
+        let maps = [of_positions(0, f0)?, of_positions(1, f1)?];
+        let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
+        self.located(maps, registered, status, &mut phase).map(Some)
+    }
+
+    /// The source's locations on the target: h₁⁻¹.
+    fn located(
+        &self,
+        maps: [SphereMap; 2],
+        registered: [Vec<Vector3>; 2],
+        status: Status,
+        observer: &mut dyn Observer,
+    ) -> Result<Laid, Error> {
+        let locator = Locator::new(&registered[1], self.meshes[1].faces());
+        let (locations, status) = located(&locator, &registered[0], status, observer)?;
+        Ok(Laid { maps, registered, locations, energy: f64::INFINITY, status })
+    }
+
+    /// After the descent between the surfaces.
+    fn lowered(
+        &self,
+        laid: Laid,
+        is_refined: bool,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Laid {
+        let Laid { registered: [_, target_registered], locations, status, .. } = &laid;
+        if *status == Status::Cancelled {
+            return laid;
+        }
+        let between = Between {
+            source: self.meshes[0],
+            target: self.meshes[1],
+            target_points: self.target_points,
+            domain: CanonicalDomain::Sphere,
+            target_in_domain: target_registered,
+            landmarks: self.landmarks,
+            signals: self.signals.clone(),
+            options: self.options,
+            is_refined,
+        };
+        let Lowered { locations, registered, energy, status } =
+            between.lower(locations.clone(), history, observer);
+        let [_, target_registered] = laid.registered;
+        Laid { maps: laid.maps, registered: [registered, target_registered], locations, energy, status }
+    }
+
+    fn is_laid_by_landmarks(&self) -> bool {
+        self.landmarks.source.len() >= fewest(CanonicalDomain::Sphere)
+    }
+
+    /// Lays the spheres over each other by their maps.
+    fn laid(
+        &self,
+        angle_weight: f64,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<Laid, Error> {
+        let &Self { meshes: [source, target], landmarks, signals, options, .. } = self;
+        // 1. Both surfaces to the sphere
+        let alone = SphereMapOptions { angle_weight, ..Default::default() };
+        let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
+            map_sphere(mesh, &alone, observer).map_err(|error| error.of_surface(side))
+        };
+        let f0 = map(source, Side::Source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
+        let f1 = map(target, Side::Target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
+        // 2. The source turned by landmarks, and bent by features; the middle of each pair
+        let [on_sphere, target_on_sphere] = [&f0, &f1].map(|map| vectors(map.positions.view()));
+        let by_landmarks = self
+            .is_laid_by_landmarks()
+            .then(|| turned(source, on_sphere.clone(), landmarks, &target_on_sphere));
+        let (turned, start) = match by_landmarks {
+            Some(turned) if options.features.is_none() => (turned, Status::Converged),
+            by_landmarks => aligned(
+                OnSphere { mesh: source, map: &on_sphere },
+                OnSphere { mesh: target, map: &target_on_sphere },
+                signals,
+                by_landmarks,
+                &pairs(landmarks, &on_sphere, &target_on_sphere),
+                &Watch::new(observer, 0.6, "Aligning features"),
+            )?,
+        };
+        let places = meeting_places(&pairs(landmarks, &turned, &target_on_sphere));
+        // 3. h₀ and h₁: the landmarks of both carried to the middles
+        let carrying = |mesh, landmarks| Carrying {
+            mesh,
+            domain: CanonicalDomain::Sphere,
+            holds_boundary: false,
+            landmarks,
+            places: &places,
+            weight: options.weight,
+            angle_weight,
+        };
+        let mut phase = Phase { whole: observer, from: 0.6, to: 0.75 };
+        let (registered, first) = carrying(source, landmarks.source).carry(turned, history, &mut phase)?;
+        let mut phase = Phase { whole: observer, from: 0.75, to: 0.9 };
+        let (target_registered, second) =
+            carrying(target, landmarks.target).carry(target_on_sphere, history, &mut phase)?;
+        // 4. The source's locations on the target
+        let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
+        let status = worst([start, first, second]);
+        self.located([f0, f1], [registered, target_registered], status, &mut phase)
+    }
 }
 
 /// Whether one of two surfaces is inside out relative to the other, by the signs of their volumes.

@@ -30,6 +30,7 @@ use crate::error::Error;
 use crate::mesh::{Surface, TriangleMesh};
 
 use crate::codomain::SpatialMap;
+use crate::vector::Vector3;
 pub use options::{SphereMapOptions, SphereMethod};
 pub use refinement::Refinement;
 use refinement::refine;
@@ -58,6 +59,31 @@ pub struct SphereMap {
     pub refinement: Option<Box<Refinement>>,
     /// Wall time of the whole call.
     pub seconds: f64,
+}
+
+impl SphereMap {
+    /// A map at hand, with its figures.
+    ///
+    /// # Errors
+    /// Faces without area.
+    pub(crate) fn of_positions(
+        mesh: &TriangleMesh,
+        positions: Vec<Vector3>,
+        status: Status,
+    ) -> Result<Self, Error> {
+        let history = History::start();
+        let targets = mesh.face_areas().to_vec();
+        let distortion = measure(mesh.points(), mesh.faces(), Image::Sphere(&positions), &targets)?;
+        Ok(Self {
+            positions: from_vectors(positions),
+            status,
+            seconds: history.seconds(),
+            history,
+            distortion,
+            targets,
+            refinement: None,
+        })
+    }
 }
 
 /// Maps a closed surface of genus 0 onto the unit sphere so that areas are preserved.

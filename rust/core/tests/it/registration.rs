@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Registrations by their properties: no folds, landmarks on landmarks, identities, refusals, inverse.
 
-use crate::common::closed::{bumpy, spheres};
+use crate::common::closed::{bumpy, radial, spheres};
 use crate::common::public::{planar, spatial, triples};
 use crate::common::public::{register_disks, register_spheres};
 use crate::common::random::Random;
@@ -106,6 +106,40 @@ fn closed_surfaces_meet_in_their_landmarks() {
         let is_there = found.landmark_error[k] <= 1e-3 && distance(positions[p], target.points()[q]) < 5e-3;
         assert!(is_there || found.missed.contains(&k), "pair {k}");
     }
+}
+
+/// From coarse to fine: more than 5,000 vertices.
+#[test]
+fn large_surfaces_keep_shapes_and_fold_nothing() {
+    let wavy = |[x, y, z]: [f64; 3]| 1.0 + 0.15 * (3.0 * x).sin() * (2.0 * y).cos() + 0.1 * z;
+    let source = radial("wavy", 5, wavy).mesh();
+    let target = ellipsoid(5, [1.0, 1.2, 0.9]).mesh();
+    let marks = [0, 1, 2, 3, 4, 700, 4000];
+    let landmarks = Landmarks { source: &marks, target: &marks };
+    let options = RegistrationOptions::default();
+    let found = register_spheres(&source, &target, &landmarks, &options, &mut Silent).unwrap();
+    // 1. One-to-one, landmarks exact
+    assert!(folded_on_sphere(source.faces(), &spatial(&found.registered)).is_empty());
+    let target_faces = faces_of_indices(triples(&found.correspondence.target_faces()));
+    assert!(folded_on_sphere(&target_faces, &spatial(&found.target_registered)).is_empty());
+    let positions = spatial(&found.correspondence.positions());
+    assert!(found.missed.is_empty());
+    for mark in marks {
+        assert!(distance(positions[mark], target.points()[mark]) < 1e-9);
+    }
+    // 2. Shapes are kept: most faces are stretched little
+    assert!(found.strain().stretched < 0.01, "{}", found.strain().stretched);
+}
+
+#[test]
+fn a_large_sphere_onto_itself_is_the_identity() {
+    let mesh = radial("wavy", 5, |[x, y, z]| 1.0 + 0.2 * (3.0 * x + y).sin() * z).mesh();
+    let marks = [5, 900, 5000];
+    let landmarks = Landmarks { source: &marks, target: &marks };
+    let options = RegistrationOptions::default();
+    let found = register_spheres(&mesh, &mesh, &landmarks, &options, &mut Silent).unwrap();
+    assert!(moved(&mesh, &spatial(&found.correspondence.positions())) < 1e-6);
+    assert_eq!(found.status, Status::Converged);
 }
 
 #[test]

@@ -105,8 +105,19 @@ impl Decimation<'_> {
     /// Collapses vertices until four are left, including the apex, or until none can collapse; `None` where the
     /// observer ended the run.
     pub(crate) fn coarsen(&mut self, observer: &mut dyn Observer) -> Option<()> {
-        let surplus = self.degrees.len().saturating_sub(4);
-        let mut queue = self.candidates(observer)?;
+        self.coarsen_to(4, |_| false, observer)
+    }
+
+    /// Collapses vertices until so many are left, including the apex, or until none can collapse; those that stay never
+    /// do. `None` where the observer ended the run.
+    pub(crate) fn coarsen_to(
+        &mut self,
+        n_left: usize,
+        stays: impl Fn(Vertex) -> bool,
+        observer: &mut dyn Observer,
+    ) -> Option<()> {
+        let surplus = self.degrees.len().saturating_sub(n_left.max(4));
+        let mut queue = self.candidates(&stays, observer)?;
         let mut waiting = vec![false; self.degrees.len()];
         let mut ring = Ring::default();
         while self.collapses.len() < surplus {
@@ -137,13 +148,18 @@ impl Decimation<'_> {
     }
 
     /// All vertices with their costs; `None` where the observer ended the run.
-    fn candidates(&self, observer: &mut dyn Observer) -> Option<BinaryHeap<Reverse<Candidate>>> {
+    fn candidates(
+        &self,
+        stays: &impl Fn(Vertex) -> bool,
+        observer: &mut dyn Observer,
+    ) -> Option<BinaryHeap<Reverse<Candidate>>> {
         let n = self.mesh.n_vertices();
         let mut candidates = Vec::with_capacity(n);
         for first in (0..n).step_by(ROUND) {
             let costs = parallel::map(ROUND.min(n - first), |k| self.first_cost(Vertex::new(first + k)));
             let with_cost = |(k, cost)| Reverse(Candidate { cost, vertex: Vertex::new(first + k) });
-            candidates.extend(costs.into_iter().enumerate().map(with_cost));
+            let moves = |(k, _): &(usize, f64)| !stays(Vertex::new(first + k));
+            candidates.extend(costs.into_iter().enumerate().filter(moves).map(with_cost));
             if !observer.progress(0.0, "Coarsening") {
                 return None;
             }

@@ -20,7 +20,7 @@ use crate::mesh::ties::tie_breakers;
 use crate::mesh::{Corner, Face, TriangleMesh, Vertex};
 
 /// A mesh that loses vertices by [`Decimation::coarsen`] and gets them back by [`Decimation::refine`].
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Decimation<'a> {
     mesh: &'a TriangleMesh,
     /// The faces of the mesh, then those at the apex.
@@ -117,6 +117,14 @@ impl<'a> Decimation<'a> {
             let ends = [corner.next(), corner.previous()].map(|corner| self.vertex(corner));
             (ends[0], ends[1], self.faces[corner.face()].target)
         })
+    }
+
+    /// The faces that are left, those at the apex aside.
+    pub(crate) fn faces(&self) -> impl Iterator<Item = [Vertex; 3]> {
+        // a face that is gone has a corner that no neighbor knows
+        Face::all(self.mesh.n_faces())
+            .filter(|face| face.corners().into_iter().all(|corner| self.twin(self.twin(corner)) == corner))
+            .map(|face| self.faces[face].vertices)
     }
 
     /// The number of neighbors of a vertex.

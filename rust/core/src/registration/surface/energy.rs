@@ -36,6 +36,8 @@ pub(super) struct SurfaceEnergy<'a> {
     /// The area of each face, 1 in total.
     pub areas: Vec<f64>,
     hats: Vec<Hats>,
+    /// Faces that do not count, since they are folded at the start.
+    left_out: Vec<bool>,
     /// A third of the areas of the faces at each vertex.
     shares: Vec<f64>,
     /// The place in space and the weight of the soft landmarks at each vertex that has any.
@@ -63,7 +65,14 @@ impl<'a> SurfaceEnergy<'a> {
         let pull = |pull: &Pull| (pull.vertex, target.points[pull.place], pull.weight);
         let mut pulls: Vec<_> = problem.pulls.iter().map(pull).collect();
         pulls.sort_by_key(|(vertex, _, _)| *vertex);
-        Self { source, target, guard, kind, areas, hats, shares, pulls, problem }
+        let left_out = vec![false; source.n_faces()];
+        Self { source, target, guard, kind, areas, hats, left_out, shares, pulls, problem }
+    }
+
+    /// Leaves out the faces that are folded by a map; returns them.
+    pub(super) fn leave_out_folded(&mut self, map: &[Placed]) -> Vec<usize> {
+        self.left_out = parallel::map(self.areas.len(), |face| Self::is_folded(self.corners(map, face)));
+        (0..self.areas.len()).filter(|&face| self.left_out[face]).collect()
     }
 
     /// The energy of a map.
@@ -87,13 +96,16 @@ impl<'a> SurfaceEnergy<'a> {
     }
 
     /// Whether a face is folded in the domain.
-    pub(super) fn is_folded(corners: [&Placed; 3]) -> bool {
+    fn is_folded(corners: [&Placed; 3]) -> bool {
         let [a, b, c] = corners.map(|placed| placed.in_domain);
         a.dot(b.cross(c)) <= LEAST_DETERMINANT
     }
 
     /// The energy of a face per area, infinite if it is folded.
     pub(super) fn face_value(&self, face: usize, corners: [&Placed; 3]) -> f64 {
+        if self.left_out[face] {
+            return 0.0;
+        }
         if Self::is_folded(corners) {
             return f64::INFINITY;
         }
@@ -112,6 +124,9 @@ impl<'a> SurfaceEnergy<'a> {
         corners: [&Placed; 3],
         frames: [&[Vector3; 2]; 3],
     ) -> Expansion {
+        if self.left_out[face] {
+            return Expansion::default();
+        }
         let (hats, area) = (&self.hats[face], self.areas[face]);
         let images = jacobian(hats, corners.map(|placed| placed.point));
         let (in_space, _) = self.kind.expansion(&images, hats, &frames.map(|frame| *frame));

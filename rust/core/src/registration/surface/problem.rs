@@ -37,6 +37,8 @@ pub(crate) struct SurfaceProblem<'a> {
     /// Signals that should agree: the sum of their squared differences at the source's vertices, weighted by area with
     /// 1 for the whole source, is part of the energy.
     pub signals: Signals,
+    /// Whether the start comes from a map between coarse meshes.
+    pub is_refined: bool,
     /// The energy of each face.
     pub face_energy: FaceEnergy,
 }

@@ -79,6 +79,7 @@ impl Sample {
             held: vec![false; self.source.n_vertices()],
             pulls: Vec::new(),
             signals: Signals::default(),
+            is_refined: false,
             face_energy: FaceEnergy { area_weight: 1.0, angle_weight: 1.0 },
         }
     }

@@ -222,7 +222,7 @@ mod tests {
             prepared(source, target, weights).map(|_| ()).unwrap_err().to_string()
         };
         assert!(said(&array![[1.], [2.]], &good, &[1.0]).contains("source features must be of shape (4, k)"));
-        assert!(said(&good, &array![[1.], [f64::NAN], [3.], [4.]], &[1.0]).contains("vertices 1"));
+        assert!(said(&good, &array![[1.], [f64::NAN], [3.], [4.]], &[1.0]).contains("infinite at vertex 1"));
         assert!(said(&good, &array![[5.], [5.], [5.], [5.]], &[1.0]).contains("constant in column 0"));
         assert!(
             said(&good, &array![[1., 2.], [2., 1.], [3., 5.], [4., 6.]], &[1.0]).contains("as many signals")

@@ -171,7 +171,7 @@ pub use registration::{
     SphereRegistration, Strain, follow, homotopy, register_disks, register_spheres,
 };
 pub use repair::{CloseHandles, CloseHoles, Keep, RepairCounts, RepairOptions, Repaired, repair};
-pub use resampling::{InverseMap, Outside, PerElement, Places, RefinedFaces};
+pub use resampling::{CellIntegrals, Grid, Icosphere, InverseMap, Outside, PerElement, Places, RefinedFaces};
 pub use seams::{SeamMethod, SeamOptions, Seams, Symmetry, seams};
 pub use sphere::{Refinement, SphereMap, SphereMapOptions, SphereMethod, sphere_map};
 pub use untangle::{UntangleOptions, Untangled, untangle};

@@ -248,6 +248,17 @@ class DiskMap(Result):
         nearest: bool = False,
         outside: Literal["nearest"] | complex | None = None,
     ) -> NDArray[Any]: ...
+    def image(
+        self,
+        values: ArrayLike,
+        shape: tuple[int, int],
+        *,
+        extent: ArrayLike | None = None,
+        per: Literal["vertex", "face"] | None = None,
+        nearest: bool = False,
+        conservative: bool | Literal["total"] = False,
+        outside: Literal["nearest"] | complex | None = None,
+    ) -> NDArray[Any]: ...
 
 @final
 class Refinement(Result):
@@ -294,6 +305,33 @@ class SphereMap(Result):
         per: Literal["vertex", "face"] | None = None,
         nearest: bool = False,
     ) -> NDArray[Any]: ...
+    def equirectangular(
+        self,
+        values: ArrayLike,
+        shape: tuple[int, int],
+        *,
+        per: Literal["vertex", "face"] | None = None,
+        nearest: bool = False,
+        conservative: bool | Literal["total"] = False,
+    ) -> NDArray[Any]: ...
+    def equal_area_grid(
+        self,
+        values: ArrayLike,
+        n: int,
+        *,
+        per: Literal["vertex", "face"] | None = None,
+        nearest: bool = False,
+        conservative: bool | Literal["total"] = False,
+    ) -> NDArray[Any]: ...
+    def resample(
+        self,
+        values: ArrayLike,
+        level: int,
+        *,
+        per: Literal["vertex", "face"] | None = None,
+        nearest: bool = False,
+        conservative: bool | Literal["total"] = False,
+    ) -> tuple[NDArray[Any], Surface]: ...
     def layout(
         self,
         kind: Literal["lambert", "octahedral"] = "lambert",

@@ -43,7 +43,8 @@ def _area_values(result: _native.Result) -> NDArray[np.float64] | None:
         front = np.stack([x, -y, -z], axis=-1)
         back = front * [-1, -1, 1]
         inside = x * x + z * z < 1
-        return np.hstack([np.where(inside, _at(result, points), np.nan) for points in (front, back)])
+        views = [np.where(inside, _at(result, points), np.nan) for points in (front, back)]
+        return np.hstack(views).astype(np.float64)
     return None
 
 
@@ -57,7 +58,7 @@ def _plane(uv: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _steps() -> NDArray[np.float64]:
     """The centers of a row of pixels from -1 to 1."""
-    return (np.arange(_SIDE) + 0.5) * (2 / _SIDE) - 1
+    return np.asarray((np.arange(_SIDE) + 0.5) * (2 / _SIDE) - 1, np.float64)
 
 
 def _at(result: Any, points: NDArray[np.float64]) -> NDArray[np.float64]:

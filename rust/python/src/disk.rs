@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use authalic::{Boundary, DiskMapOptions, DiskMethod, Error, InverseMap, Record, RepairOptions};
+use authalic::{Boundary, DiskMapOptions, DiskMethod, Error, Grid, InverseMap, Record, RepairOptions};
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -13,13 +13,14 @@ use crate::arrays::{Reals, from_array, real_table, reals, reals_of_each};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, to_python};
 use crate::indices::{from_indices, index_list, narrowed};
-use crate::lookup::{Beyond, Invertible, Lookup, Request, image_of, locate};
+use crate::lookup::{Beyond, Conservative, Invertible, Lookup, Request, grid_shape, image_of, locate};
 use crate::options::{history, parse_iterations};
 use crate::provenance::{Call, Origin, fingerprint, options};
 use crate::repair::{Prepared, Repaired, check_no_start};
 use crate::result::{Restorable, ResultBase, State, made};
 use crate::run::run;
 use crate::surface::{Given, oriented};
+use crate::values::Values;
 
 /// A map of a disk to the unit disk or onto a rectangle, one-to-one but for `overlap`.
 #[pyclass(frozen, extends = ResultBase, module = "authalic")]
@@ -105,9 +106,34 @@ impl Invertible for DiskMap {
     }
 }
 
+impl DiskMap {
+    /// The left, right, lower and upper side of the square around the unit disk, or of the rectangle.
+    fn extent(&self, py: Python<'_>) -> [f64; 4] {
+        let uv = self.uv.bind(py).readonly();
+        let uv = uv.as_array();
+        // a rectangle has its lower left corner at the origin, and a disk has it in the middle
+        if uv.iter().any(|&x| x < 0.0) {
+            return [-1.0, 1.0, -1.0, 1.0];
+        }
+        let largest = |axis: usize| uv.column(axis).iter().fold(0.0, |most: f64, &x| most.max(x));
+        [0.0, largest(0), 0.0, largest(1)]
+    }
+}
+
+/// The sides of a picture.
+fn parse_extent(extent: &Bound<'_, PyAny>) -> PyResult<[f64; 4]> {
+    let expected = "of shape (4,), the left, right, lower and upper side";
+    let given = Values::new(extent, "extent")?;
+    if given.shape() != [4] {
+        return Err(bad_array(extent.py(), "extent", given.shape_words(), expected.into()));
+    }
+    let sides = given.reals(expected)?;
+    Ok([sides[0], sides[1], sides[2], sides[3]])
+}
+
 #[pymethods]
 impl DiskMap {
-    /// Find the places on the surface whose images are given points.
+    /// Finds the places on the surface whose images are given points.
     ///
     /// Parameters
     /// ----------
@@ -147,7 +173,7 @@ impl DiskMap {
         locate(py, self.inverse(py)?, real_table::<2>(points, "points")?, Beyond::new(outside)?.outside)
     }
 
-    /// Map places on the surface: the inverse of `locate`.
+    /// Maps places on the surface: the inverse of `locate`.
     ///
     /// Parameters
     /// ----------
@@ -182,7 +208,7 @@ impl DiskMap {
         image_of(py, self.inverse(py)?, triangles, barycentric)
     }
 
-    /// Carry values of the surface to points of its image.
+    /// Carries values of the surface to points of its image.
     ///
     /// Parameters
     /// ----------
@@ -230,6 +256,75 @@ impl DiskMap {
         let points = real_table::<2>(points, "points")?;
         let request = Request { values, per, nearest, beyond: Beyond::new(outside)? };
         request.at(py, self.inverse(py)?, points)
+    }
+
+    /// Draws values as a picture of the disk or the rectangle.
+    ///
+    /// Row 0 is the upper one, and pixels have the values at their centers, as `matplotlib.pyplot.imshow(picture,
+    /// extent=extent)` shows them.
+    ///
+    /// Parameters
+    /// ----------
+    /// values : (n, ...) or (m, ...) array
+    ///     One row per vertex or per face.
+    /// shape : (int, int)
+    ///     The numbers of rows and columns.
+    /// extent : (4,) real array, optional
+    ///     The left, right, lower and upper side of the picture. Default: (-1, 1, -1, 1), the square around the unit
+    ///     disk; for a map onto a rectangle, that rectangle.
+    /// per : "vertex" or "face", optional
+    ///     The elements that `values` has a row for. Default: as its length says, vertices if both fit.
+    /// nearest : bool
+    ///     Take the value of the corner with the largest weight, of any dtype, instead of interpolating: for labels.
+    /// conservative : bool or "total"
+    ///     False: the value at the center of a pixel. True: the mean over the part of it that the image covers, weighted
+    ///     by area. "total": the integral over that part; all of them add up to the integral over the image. Values per
+    ///     vertex count on each face by the mean of its corners.
+    /// outside : "nearest" or number
+    ///     What pixels outside the image get: the value of the nearest place on its boundary, or this number. Default
+    ///     NaN, or 0 for values of a dtype without NaN.
+    ///
+    /// Returns
+    /// -------
+    /// (rows, columns, ...) array
+    ///     float64; with `nearest`, the dtype of `values`.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     The values have another shape, or without `nearest` are no real numbers.
+    /// ValueError
+    ///     An option is none of those above.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]]
+    /// >>> disk = authalic.disk_map(*square)
+    /// >>> disk.image([0, 0, 1, 1], (64, 64)).shape
+    /// (64, 64)
+    /// >>> disk.image([1, 1, 1, 1], (64, 64), conservative="total").sum().round(9).item()  # the area of the image
+    /// 2.0
+    #[pyo3(signature = (values, shape, *, extent=None, per=None, nearest=false, conservative=Conservative::No,
+                        outside=None),
+           text_signature = "($self, values, shape, *, extent=None, per=None, nearest=False, conservative=False, \
+                             outside=None)")]
+    #[allow(clippy::too_many_arguments)] // keyword arguments of the Python method
+    fn image(
+        &self,
+        py: Python<'_>,
+        values: &Bound<'_, PyAny>,
+        shape: (i64, i64),
+        extent: Option<&Bound<'_, PyAny>>,
+        per: Option<&str>,
+        nearest: bool,
+        conservative: Conservative,
+        outside: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Py<PyAny>> {
+        let [rows, columns] = grid_shape(shape)?;
+        let extent = extent.map_or_else(|| Ok(self.extent(py)), parse_extent)?;
+        let request = Request { values, per, nearest, beyond: Beyond::new(outside)? };
+        request.in_cells(py, self.inverse(py)?, Grid::Planar { rows, columns, extent }, conservative)
     }
 
     /// One record per iteration, the start first, as a structured array.

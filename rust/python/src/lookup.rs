@@ -3,11 +3,12 @@
 
 use std::sync::Arc;
 
-use authalic::{Error, InverseMap, Outside, PerElement};
+use authalic::{CellIntegrals, Error, Grid, Icosphere, InverseMap, Outside, PerElement};
 use numpy::ndarray::{Array2, aview1};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
+use pyo3::{Borrowed, FromPyObject};
 
 use crate::arrays::{Reals, own_array, real_table};
 use crate::errors::{bad_array, bad_option, to_python};
@@ -82,6 +83,48 @@ impl<'a, 'py> Beyond<'a, 'py> {
     }
 }
 
+/// What a cell gets.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Conservative {
+    /// The value at its center.
+    No,
+    /// The mean over the part of it that the image covers.
+    Mean,
+    /// The integral over it.
+    Total,
+}
+
+impl Conservative {
+    fn of(self, integrals: &CellIntegrals, fill: f64) -> Array2<f64> {
+        if self == Self::Total { integrals.totals.clone() } else { integrals.means(fill) }
+    }
+}
+
+impl<'py> FromPyObject<'_, 'py> for Conservative {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(is_wanted) = given.extract::<bool>() {
+            return Ok(if is_wanted { Self::Mean } else { Self::No });
+        }
+        match given.extract::<String>().as_deref() {
+            Ok("total") => Ok(Self::Total),
+            _ => Err(bad_option(format!(
+                "conservative must be True, False or \"total\", but is {}",
+                given.repr()?
+            ))),
+        }
+    }
+}
+
+/// The shape of a grid, (rows, columns).
+pub fn grid_shape(shape: (i64, i64)) -> PyResult<[usize; 2]> {
+    let [rows, columns] = [shape.0, shape.1].map(|length| usize::try_from(length).ok().filter(|&n| n > 0));
+    rows.zip(columns).map(Into::into).ok_or_else(|| {
+        bad_option(format!("shape must be (rows, columns), each ≥ 1, but is ({}, {})", shape.0, shape.1))
+    })
+}
+
 /// Values of a surface that are asked for at points.
 pub struct Request<'a, 'py> {
     pub values: &'a Bound<'py, PyAny>,
@@ -120,6 +163,68 @@ impl Request<'_, '_> {
             map.sample(numbers.view(), per, points.view(), (outside, fill), observer)
         })?;
         from_values(py, sampled.into_raw_vec_and_offset().0, shape)
+    }
+
+    /// Values in the cells of a grid: at their centers, or means over them.
+    pub fn in_cells(
+        &self,
+        py: Python<'_>,
+        map: Arc<InverseMap>,
+        grid: Grid,
+        conservative: Conservative,
+    ) -> PyResult<Py<PyAny>> {
+        grid.check().map_err(|error| to_python(py, &error))?;
+        let shape = grid.shape().to_vec();
+        if conservative == Conservative::No {
+            let centers = py.detach(|| grid.centers());
+            return self.on_grid(py, map, centers, shape);
+        }
+        let (per, numbers, shape) = self.quantities(py, &map, shape)?;
+        let fill = self.beyond.fill.map_or(Ok(f64::NAN), |fill| fill.extract())?;
+        let cells = run(py, None, move |observer| {
+            let integrals = map.integrate(numbers.view(), per, &grid, observer)?;
+            Ok(conservative.of(&integrals, fill))
+        })?;
+        from_values(py, cells.into_raw_vec_and_offset().0, shape)
+    }
+
+    /// Values at the vertices of an icosphere, or means around them.
+    pub fn on_icosphere(
+        &self,
+        py: Python<'_>,
+        map: Arc<InverseMap>,
+        icosphere: Arc<Icosphere>,
+        conservative: Conservative,
+    ) -> PyResult<Py<PyAny>> {
+        let positions = icosphere.positions();
+        let shape = vec![positions.nrows()];
+        if conservative == Conservative::No {
+            return self.on_grid(py, map, positions, shape);
+        }
+        let (per, numbers, shape) = self.quantities(py, &map, shape)?;
+        let around = run(py, None, move |observer| {
+            let of_faces = map.integrate_on_icosphere(numbers.view(), per, &icosphere, observer)?;
+            Ok(conservative.of(&icosphere.to_vertices(&of_faces), f64::NAN))
+        })?;
+        from_values(py, around.into_raw_vec_and_offset().0, shape)
+    }
+
+    /// The values as numbers that can be added up, the elements that they belong to, and the shape of the result.
+    fn quantities(
+        &self,
+        py: Python<'_>,
+        map: &InverseMap,
+        grid: Vec<usize>,
+    ) -> PyResult<(PerElement, Array2<f64>, Vec<usize>)> {
+        if self.nearest {
+            return Err(bad_option(
+                "nearest=True takes labels, which have no means: leave conservative out".into(),
+            ));
+        }
+        let values = Values::new(self.values, "values")?;
+        let per = self.per(py, map, &values)?;
+        let shape = grid.into_iter().chain(values.shape()[1..].iter().copied()).collect();
+        Ok((per, self.numbers(&values)?, shape))
     }
 
     /// The elements that the values belong to.

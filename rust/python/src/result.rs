@@ -127,7 +127,7 @@ impl ResultBase {
         self.origin.as_ref().map(|origin| origin.dictionary(py)).transpose()
     }
 
-    /// Save the result to a file, from which `authalic.load` makes it again.
+    /// Saves the result to a file, from which `authalic.load` makes it again.
     ///
     /// This version reads the file, and so do later ones.
     ///

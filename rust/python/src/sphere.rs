@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use authalic::{
-    InverseMap, LineSearch, Outside, RefinedFaces, RepairOptions, SphereFaces, SphereMapOptions, SphereMethod,
+    Grid, Icosphere, InverseMap, LineSearch, Outside, RefinedFaces, RepairOptions, SphereFaces,
+    SphereMapOptions, SphereMethod,
 };
 use numpy::ndarray::{ArrayView2, Axis, concatenate};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -15,13 +16,13 @@ use crate::distortion::Distortion;
 use crate::errors::{bad_option, to_python};
 use crate::indices::{from_index_list, from_indices, index_table, narrowed};
 use crate::layout::{Arguments, Layout, layout};
-use crate::lookup::{Beyond, Invertible, Lookup, Request, image_of, locate};
+use crate::lookup::{Beyond, Conservative, Invertible, Lookup, Request, grid_shape, image_of, locate};
 use crate::options::{history, parse_iterations};
 use crate::provenance::{Call, Origin, options};
 use crate::repair::{Prepared, Repaired, check_no_start};
 use crate::result::{Restorable, ResultBase, State, made, restorable};
 use crate::run::run;
-use crate::surface::{Given, oriented};
+use crate::surface::{Given, Surface, oriented};
 
 /// A one-to-one map of a closed surface to the unit sphere.
 #[pyclass(frozen, extends = ResultBase, module = "authalic")]
@@ -241,7 +242,7 @@ impl SphereMap {
         frozen(PyArray1::from_slice(py, &self.sphere.targets))
     }
 
-    /// Find the places on the surface whose images are given points.
+    /// Finds the places on the surface whose images are given points.
     ///
     /// Parameters
     /// ----------
@@ -276,7 +277,7 @@ impl SphereMap {
         locate(py, self.inverse(py)?, real_table::<3>(points, "points")?, Outside::Nowhere)
     }
 
-    /// Map places on the surface: the inverse of `locate`.
+    /// Maps places on the surface: the inverse of `locate`.
     ///
     /// Parameters
     /// ----------
@@ -311,7 +312,7 @@ impl SphereMap {
         image_of(py, self.inverse(py)?, triangles, barycentric)
     }
 
-    /// Carry values of the surface to points of its image.
+    /// Carries values of the surface to points of its image.
     ///
     /// Parameters
     /// ----------
@@ -355,6 +356,185 @@ impl SphereMap {
         let points = real_table::<3>(points, "points")?;
         let request = Request { values, per, nearest, beyond: Beyond::new(None)? };
         request.at(py, self.inverse(py)?, points)
+    }
+
+    /// Lays values out as a picture of the sphere, by equal steps of latitude and longitude.
+    ///
+    /// Row 0 lies at the north pole (+z), and column 0 at the longitude −180°, counted from +x towards +y. The center of
+    /// cell (i, j) has the latitude 90° − (i + 1/2) 180°/rows, and the longitude (j + 1/2) 360°/columns − 180°.
+    ///
+    /// Parameters
+    /// ----------
+    /// values : (n, ...) or (m, ...) array
+    ///     One row per vertex or per face.
+    /// shape : (int, int)
+    ///     The numbers of rows and columns.
+    /// per : "vertex" or "face", optional
+    ///     The elements that `values` has a row for. Default: as its length says, vertices if both fit.
+    /// nearest : bool
+    ///     Take the value of the corner with the largest weight, of any dtype, instead of interpolating: for labels.
+    /// conservative : bool or "total"
+    ///     False: the value at the center of a cell. True: the mean over the cell, weighted by area on the sphere;
+    ///     times the cells' areas, these add up to the integral over the sphere. "total": that integral over each cell.
+    ///     Values per vertex count on each face by the mean of its corners.
+    ///
+    /// Returns
+    /// -------
+    /// (rows, columns, ...) array
+    ///     float64; with `nearest`, the dtype of `values`.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     The values have another shape, or without `nearest` are no real numbers.
+    /// ValueError
+    ///     An option is none of those above.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    /// >>> ball = authalic.sphere_map(corners, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
+    /// >>> picture = ball.equirectangular([0, 0, 0, 1], (90, 180), conservative="total")
+    /// >>> picture.shape, picture.sum().round(6).item()  # a quarter of 4π
+    /// ((90, 180), 3.141593)
+    #[pyo3(signature = (values, shape, *, per=None, nearest=false, conservative=Conservative::No),
+           text_signature = "($self, values, shape, *, per=None, nearest=False, conservative=False)")]
+    #[allow(clippy::too_many_arguments)] // keyword arguments of the Python method
+    fn equirectangular(
+        &self,
+        py: Python<'_>,
+        values: &Bound<'_, PyAny>,
+        shape: (i64, i64),
+        per: Option<&str>,
+        nearest: bool,
+        conservative: Conservative,
+    ) -> PyResult<Py<PyAny>> {
+        let [rows, columns] = grid_shape(shape)?;
+        let request = Request { values, per, nearest, beyond: Beyond::new(None)? };
+        request.in_cells(py, self.inverse(py)?, Grid::Equirectangular { rows, columns }, conservative)
+    }
+
+    /// Lays values out on a grid whose cells all have one area (Lambert's cylindrical projection).
+    ///
+    /// Rows are equal steps of the height z, from +1 down to −1; columns are equal steps of longitude, as for
+    /// `equirectangular`. A plain mean over the cells is the mean over the sphere.
+    ///
+    /// Parameters
+    /// ----------
+    /// values : (n, ...) or (m, ...) array
+    ///     One row per vertex or per face.
+    /// n : int
+    ///     The number of rows. There are 2 n columns.
+    /// per : "vertex" or "face", optional
+    ///     The elements that `values` has a row for. Default: as its length says, vertices if both fit.
+    /// nearest : bool
+    ///     Take the value of the corner with the largest weight, of any dtype, instead of interpolating: for labels.
+    /// conservative : bool or "total"
+    ///     False: the value at the center of a cell. True: the mean over the cell, weighted by area on the sphere;
+    ///     times the cells' areas, these add up to the integral over the sphere. "total": that integral over each cell.
+    ///     Values per vertex count on each face by the mean of its corners.
+    ///
+    /// Returns
+    /// -------
+    /// (n, 2 n, ...) array
+    ///     float64; with `nearest`, the dtype of `values`.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     The values have another shape, or without `nearest` are no real numbers.
+    /// ValueError
+    ///     An option is none of those above.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    /// >>> ball = authalic.sphere_map(corners, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
+    /// >>> ball.equal_area_grid([0, 0, 0, 1], 32, conservative=True).mean().round(9).item()
+    /// 0.25
+    #[pyo3(signature = (values, n, *, per=None, nearest=false, conservative=Conservative::No),
+           text_signature = "($self, values, n, *, per=None, nearest=False, conservative=False)")]
+    #[allow(clippy::too_many_arguments)] // keyword arguments of the Python method
+    fn equal_area_grid(
+        &self,
+        py: Python<'_>,
+        values: &Bound<'_, PyAny>,
+        n: i64,
+        per: Option<&str>,
+        nearest: bool,
+        conservative: Conservative,
+    ) -> PyResult<Py<PyAny>> {
+        let [rows, columns] = grid_shape((n, n.saturating_mul(2)))?;
+        let request = Request { values, per, nearest, beyond: Beyond::new(None)? };
+        request.in_cells(py, self.inverse(py)?, Grid::EqualArea { rows, columns }, conservative)
+    }
+
+    /// Carries values to the vertices of an icosphere.
+    ///
+    /// Maps of many surfaces to one icosphere have vertices in common. The icosahedron has a vertex at +z and one at −z;
+    /// each level divides every face in four.
+    ///
+    /// Parameters
+    /// ----------
+    /// values : (n, ...) or (m, ...) array
+    ///     One row per vertex or per face.
+    /// level : int
+    ///     0 to 10; the icosphere has 10 · 4^level + 2 vertices.
+    /// per : "vertex" or "face", optional
+    ///     The elements that `values` has a row for. Default: as its length says, vertices if both fit.
+    /// nearest : bool
+    ///     Take the value of the corner with the largest weight, of any dtype, instead of interpolating: for labels.
+    /// conservative : bool or "total"
+    ///     False: the value at each vertex. True: the mean around each vertex, weighted by area on the sphere, where a
+    ///     face of the icosphere gives a third of what it has to each corner; times the areas (a third of those of the
+    ///     faces at each vertex), these add up to the integral over the sphere. "total": that integral around each vertex.
+    ///     Values per vertex count on each face by the mean of its corners.
+    ///
+    /// Returns
+    /// -------
+    /// values : (k, ...) array
+    ///     float64; with `nearest`, the dtype of `values`.
+    /// icosphere : Surface
+    ///     Its vertices are unit rows; those of a coarser level come first.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     The values have another shape, or without `nearest` are no real numbers.
+    /// ValueError
+    ///     An option is none of those above.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    /// >>> ball = authalic.sphere_map(corners, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
+    /// >>> values, icosphere = ball.resample([0, 0, 0, 1], 2)
+    /// >>> values.shape, icosphere
+    /// ((162,), Surface(162 vertices, 320 faces))
+    #[pyo3(signature = (values, level, *, per=None, nearest=false, conservative=Conservative::No),
+           text_signature = "($self, values, level, *, per=None, nearest=False, conservative=False)")]
+    #[allow(clippy::too_many_arguments)] // keyword arguments of the Python method
+    fn resample(
+        &self,
+        py: Python<'_>,
+        values: &Bound<'_, PyAny>,
+        level: i64,
+        per: Option<&str>,
+        nearest: bool,
+        conservative: Conservative,
+    ) -> PyResult<(Py<PyAny>, Py<Surface>)> {
+        let level = usize::try_from(level).unwrap_or(usize::MAX);
+        let (icosphere, surface) = run(py, None, move |_| {
+            let icosphere = Icosphere::new(level)?;
+            let surface = icosphere.surface()?;
+            Ok((Arc::new(icosphere), surface))
+        })?;
+        let request = Request { values, per, nearest, beyond: Beyond::new(None)? };
+        let values = request.on_icosphere(py, self.inverse(py)?, icosphere, conservative)?;
+        Ok((values, made(py, Surface::from(surface), None)?))
     }
 
     /// Lays the map out in the plane, cut open along a seam: areas are preserved, no face is folded.

@@ -243,6 +243,13 @@ impl InverseMap {
         Ok(locations)
     }
 
+    /// The face that a part belongs to, and the place there of the middle of the part.
+    pub(super) fn middle_of(&self, part: usize) -> (usize, [f64; 3]) {
+        let location = Location { triangle: Face::new(part), barycentric: [1.0 / 3.0; 3] };
+        let Location { triangle, barycentric } = self.on_whole_face(location);
+        (triangle.index(), barycentric)
+    }
+
     /// A place on a part of a face as a place on the face.
     fn on_whole_face(&self, Location { triangle, barycentric }: Location) -> Location {
         match &self.split {

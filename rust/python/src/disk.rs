@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use authalic::{Boundary, DiskMapOptions, DiskMethod, Error, Grid, InverseMap, Record, RepairOptions};
 use numpy::ndarray::ArrayView2;
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
@@ -13,7 +13,9 @@ use crate::arrays::{Reals, from_array, real_table, reals, reals_of_each};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, to_python};
 use crate::indices::{from_indices, index_list, narrowed};
-use crate::lookup::{Beyond, Conservative, Invertible, Lookup, Request, grid_shape, image_of, locate};
+use crate::lookup::{
+    Beyond, Conservative, Invertible, Located, Lookup, Request, grid_shape, image_of, locate,
+};
 use crate::options::{history, parse_iterations};
 use crate::provenance::{Call, Origin, fingerprint, options};
 use crate::repair::{Prepared, Repaired, check_no_start};
@@ -169,7 +171,7 @@ impl DiskMap {
         py: Python<'_>,
         points: &Bound<'_, PyAny>,
         outside: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<(Py<PyArray1<i64>>, Py<PyArray2<f64>>)> {
+    ) -> PyResult<Located> {
         locate(py, self.inverse(py)?, real_table::<2>(points, "points")?, Beyond::new(outside)?.outside)
     }
 

@@ -41,13 +41,16 @@ pub trait Invertible {
     fn inverse(&self, py: Python<'_>) -> PyResult<Arc<InverseMap>>;
 }
 
+/// For Python: the face in which each point lies, (k,), and its barycentric coordinates there, (k, 3).
+pub type Located = (Py<PyArray1<i64>>, Py<PyArray2<f64>>);
+
 /// The method `locate`.
 pub fn locate(
     py: Python<'_>,
     map: Arc<InverseMap>,
     points: Array2<f64>,
     outside: Outside,
-) -> PyResult<(Py<PyArray1<i64>>, Py<PyArray2<f64>>)> {
+) -> PyResult<Located> {
     let places = run(py, None, move |observer| map.locate(points.view(), outside, observer))?;
     Ok((own_array(py, places.triangles), own_array(py, places.barycentric)))
 }

@@ -99,12 +99,12 @@ fn from_options<T: Copy + Into<usize>>(py: Python<'_>, list: &[Option<T>]) -> Py
 
 /// Makes a mesh a surface that can be mapped: an oriented manifold without faces that have no area.
 ///
-/// In this order: vertices that are NaN or infinite are dropped with their faces, and vertices without a face. Points of
-/// open edges that are equal are merged. Faces without area are removed so that no hole appears: corners at one place
-/// become one, else the longest edge is flipped. Faces that repeat another one are dropped. Edges of three or more
-/// faces are split so that parts of a body that touch come apart, and so are vertices in which parts only touch. The
-/// faces of each piece are oriented like most of them. Holes and handles are closed as asked for. A sound mesh stays as
-/// it is.
+/// In this order: vertices that are NaN or infinite are dropped with their faces, and vertices without a face. Open
+/// edges whose ends are equal are joined, and so their points merged. Faces without area are removed so that no hole
+/// appears: corners at one place become one, else the longest edge is flipped. Faces that repeat another one are
+/// dropped. Edges of three or more faces are split so that parts of a body that touch come apart, and so are vertices
+/// in which parts only touch. The faces of each piece are oriented like most of them. Holes and handles are closed as
+/// asked for. A sound mesh stays as it is.
 ///
 /// Parameters
 /// ----------
@@ -113,8 +113,8 @@ fn from_options<T: Copy + Into<usize>>(py: Python<'_>, list: &[Option<T>]) -> Py
 /// faces : (m, 3) int array
 ///     Any triangles.
 /// merge : float or None
-///     Points of open edges no farther apart than this are merged, in the unit of the vertices. Default 0: equal points.
-///     None merges none.
+///     Open edges whose ends are no farther apart than this are joined, in the unit of the vertices. Default 0: equal
+///     points. Points that only touch stay apart. None merges none.
 /// close_holes : bool, int or "pinholes"
 ///     The holes to close: all, none, or those of at most so many edges. "pinholes" (default): those of at most 8 edges
 ///     whose area is at most a tenth of that of their piece.

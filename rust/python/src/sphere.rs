@@ -16,7 +16,9 @@ use crate::distortion::Distortion;
 use crate::errors::{bad_option, to_python};
 use crate::indices::{from_index_list, from_indices, index_table, narrowed};
 use crate::layout::{Arguments, Layout, layout};
-use crate::lookup::{Beyond, Conservative, Invertible, Lookup, Request, grid_shape, image_of, locate};
+use crate::lookup::{
+    Beyond, Conservative, Invertible, Located, Lookup, Request, grid_shape, image_of, locate,
+};
 use crate::options::{history, parse_iterations};
 use crate::provenance::{Call, Origin, options};
 use crate::repair::{Prepared, Repaired, check_no_start};
@@ -269,11 +271,7 @@ impl SphereMap {
     /// >>> triangles, barycentric = ball.locate([[1, 1, -1], [0, 0, -3]])
     /// >>> triangles.tolist(), barycentric[0].round(3).tolist()
     /// ([0, 0], [0.333, 0.333, 0.333])
-    fn locate(
-        &self,
-        py: Python<'_>,
-        points: &Bound<'_, PyAny>,
-    ) -> PyResult<(Py<PyArray1<i64>>, Py<PyArray2<f64>>)> {
+    fn locate(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Located> {
         locate(py, self.inverse(py)?, real_table::<3>(points, "points")?, Outside::Nowhere)
     }
 

@@ -44,7 +44,7 @@ pub enum Keep {
 /// Options of [`repair`](super::repair).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RepairOptions {
-    /// Points of open edges that are no farther apart are merged; by default those that are equal. `None`: none.
+    /// Open edges whose ends are no farther apart are joined; by default those whose ends are equal. `None`: none.
     pub merge: Option<f64>,
     /// The holes to close; by default pinholes.
     pub close_holes: CloseHoles,

@@ -23,6 +23,9 @@ use crate::mesh::geometry::triangle;
 use crate::parallel;
 use crate::vector::Vector3;
 
+/// An area that is as good as none, in parts of the largest of a grid.
+const ROUNDING: f64 = 1e-12;
+
 /// Faces whose overlaps are found by one task.
 const BLOCK: usize = 1024;
 
@@ -43,11 +46,13 @@ impl CellIntegrals {
         Self { totals: Array2::zeros((n_cells, width)), areas: Array1::zeros(n_cells) }
     }
 
-    /// The means over the part of each cell that the image covers; `fill` where it covers nothing.
+    /// The means over the part of each cell that the image covers; `fill` where it covers nothing, or no more than
+    /// rounding makes of nothing.
     pub fn means(&self, fill: f64) -> Array2<f64> {
         let mut means = self.totals.clone();
+        let nothing = ROUNDING * self.areas.fold(0.0, |most, &area| f64::max(most, area));
         for (mut row, &area) in means.rows_mut().into_iter().zip(&self.areas) {
-            row.mapv_inplace(|total| if area > 0.0 { total / area } else { fill });
+            row.mapv_inplace(|total| if area > nothing { total / area } else { fill });
         }
         means
     }

@@ -230,7 +230,7 @@ impl<'a> Coverage<'a> {
         }
         let [top, bottom] = [edges.heights[1], edges.heights[0]].map(|y| row_of(grid, y));
         let (first_row, last_row) = (top.max(0) as usize, bottom.min(n_rows as i64 - 1));
-        if !(first <= last) || last_row < first_row as i64 {
+        if first > last || last_row < first_row as i64 {
             return None;
         }
         let (n_columns, n_rows) = ((last - first) as usize + 1, last_row as usize - first_row + 1);
@@ -326,9 +326,8 @@ impl<'a> Coverage<'a> {
         let total = self.grid.shape()[1] as i64;
         if around_north {
             // once around all columns, whose first and last may be one
-            for place in 0..self.n_columns.min(total as usize) {
-                self.widths[place] += self.grid.width();
-            }
+            let width = self.grid.width();
+            self.widths.iter_mut().take(self.n_columns.min(total as usize)).for_each(|each| *each += width);
         }
         for row in 0..self.n_rows {
             let number = self.first_row + row;

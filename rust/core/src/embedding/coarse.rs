@@ -20,9 +20,6 @@ use crate::vector::Vector3;
 /// Newton steps of a vertex that comes back.
 const STEPS: usize = 2;
 
-/// Sweeps over all vertices whenever their number has doubled, and at last.
-const SWEEPS: usize = 4;
-
 /// A coarse mesh of a surface.
 pub(crate) struct Coarse<'a> {
     decimation: Decimation<'a>,
@@ -69,8 +66,14 @@ impl<'a> Coarse<'a> {
     }
 
     /// A map of the coarse mesh without folds, taken to the whole surface without folds; `None` where double precision
-    /// does not suffice.
-    pub(crate) fn refined(&self, map: &[Vector3], domain: CanonicalDomain) -> Option<Vec<Vector3>> {
+    /// does not suffice. All vertices but those that are kept are evened out by `sweeps` whenever their number has doubled,
+    /// and at last.
+    pub(crate) fn refined(
+        &self,
+        map: &[Vector3],
+        domain: CanonicalDomain,
+        sweeps: usize,
+    ) -> Option<Vec<Vector3>> {
         let surface = self.surface;
         let mut places = vec![Vector3::ZERO; surface.n_vertices()];
         self.vertices.iter().zip(map).for_each(|(&vertex, &place)| places[vertex] = place);
@@ -90,10 +93,10 @@ impl<'a> Coarse<'a> {
             moves.push(collapse.vertex);
             if moves.len() >= next_sweep {
                 next_sweep *= 2;
-                (0..SWEEPS).for_each(|_| refining.sweep(&moves));
+                (0..sweeps).for_each(|_| refining.sweep(&moves));
             }
         }
-        (0..SWEEPS).for_each(|_| refining.sweep(&moves));
+        (0..sweeps).for_each(|_| refining.sweep(&moves));
         Some(refining.places)
     }
 }
@@ -186,7 +189,7 @@ mod tests {
         let coarse = Coarse::new(&surface, 60, |vertex| kept.contains(&vertex), &mut Silent).unwrap();
         let map: Vec<Vector3> = coarse.vertices.iter().map(|&vertex| ball[vertex]).collect();
         assert!(coarse.mesh.faces().iter().all(|&face| determinant(&map, face) > 0.0));
-        let refined = coarse.refined(&map, CanonicalDomain::Sphere).unwrap();
+        let refined = coarse.refined(&map, CanonicalDomain::Sphere, 4).unwrap();
         assert!(surface.faces().iter().all(|&face| determinant(&refined, face) > 0.0));
         assert!(kept.iter().all(|&vertex| refined[vertex] == ball[vertex]));
         // an edge of the ball is about .25 long
@@ -205,7 +208,7 @@ mod tests {
         assert!(coarse.mesh.require_disk().is_ok());
         // a map that is affine is the most similar one to a surface that is stretched like it
         let map: Vec<Vector3> = coarse.mesh.points().to_vec();
-        let refined = coarse.refined(&map, CanonicalDomain::Disk).unwrap();
+        let refined = coarse.refined(&map, CanonicalDomain::Disk, 4).unwrap();
         for vertex in Vertex::all(flat.len()) {
             if surface.is_boundary(vertex) {
                 assert_eq!(refined[vertex], flat[vertex]);

@@ -8,7 +8,7 @@ use crate::control::{History, Observer, Status};
 use crate::location::{Location, points_on};
 use crate::mesh::{TriangleMesh, Vertex};
 use crate::registration::Signals;
-use crate::registration::surface::{FaceEnergy, SurfaceProblem, descend};
+use crate::registration::surface::{FaceEnergy, Start, SurfaceProblem, descend};
 use crate::vector::Vector3;
 
 /// Two surfaces with a map that takes curves to curves.
@@ -51,7 +51,7 @@ impl Between<'_, '_> {
             held,
             pulls: Vec::new(),
             signals,
-            is_refined: false,
+            start: Start::Domain,
             face_energy: FaceEnergy { area_weight, angle_weight },
         };
         let descended = descend(&problem, start, history, observer);

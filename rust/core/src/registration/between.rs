@@ -4,7 +4,7 @@
 use super::Landmarks;
 use super::features::Signals;
 use super::options::RegistrationOptions;
-use super::surface::{Descended, Pull, SurfaceProblem, descend};
+use super::surface::{Descended, Pull, Start, SurfaceProblem, descend};
 use crate::codomain::CanonicalDomain;
 use crate::control::{History, Observer, Status};
 use crate::location::{Location, points_on};
@@ -24,8 +24,8 @@ pub(super) struct Between<'a, 'f> {
     pub landmarks: &'a Landmarks<'a>,
     pub signals: Signals,
     pub options: &'a RegistrationOptions<'f>,
-    /// Whether they come from coarse meshes that are registered.
-    pub is_refined: bool,
+    /// Where the map comes from.
+    pub start: Start,
 }
 
 /// Two surfaces after the descent.
@@ -43,15 +43,15 @@ impl Between<'_, '_> {
     /// The surfaces after the descent.
     pub(super) fn lower(
         self,
-        start: Vec<Location>,
+        map: Vec<Location>,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Lowered {
-        let Self { source, target, target_points, domain, target_in_domain, options, is_refined, .. } = self;
+        let Self { source, target, target_points, domain, target_in_domain, options, start, .. } = self;
         let (held, pulls) = self.held_and_pulled();
         let mut signals = self.signals;
         if options.position_weight > 0.0 {
-            let images = points_on(&start, target.points(), target.faces());
+            let images = points_on(&map, target.points(), target.faces());
             signals.add_positions([source, target], &images, options.position_weight);
         }
         let face_energy = options.face_energy();
@@ -64,10 +64,10 @@ impl Between<'_, '_> {
             held,
             pulls,
             signals,
-            is_refined,
+            start,
             face_energy,
         };
-        let Descended { locations, energy, status } = descend(&problem, start, history, observer);
+        let Descended { locations, energy, status } = descend(&problem, map, history, observer);
         let registered = in_domain(&locations, target.faces(), target_in_domain, domain);
         Lowered { locations, registered, energy, status }
     }

@@ -90,8 +90,9 @@ impl<'a> CoarsePair<'a> {
         &self,
         maps: [&[Vector3]; 2],
         domain: CanonicalDomain,
+        sweeps: usize,
     ) -> Option<[Vec<Vector3>; 2]> {
-        let refined = |side: usize| self.sides[side].refined(maps[side], domain);
+        let refined = |side: usize| self.sides[side].refined(maps[side], domain, sweeps);
         let (source, target) = parallel::join(|| refined(0), || refined(1));
         Some([source?, target?])
     }

@@ -13,6 +13,7 @@ use super::landmark_descent::Carrying;
 use super::landmarks::{Landmarks, best_turn, fewest};
 use super::options::{Energy, RegistrationOptions};
 use super::result::{CarryingOptions, DiskRegistration, Registration};
+use super::surface::Start;
 use super::verdict::{MISSED, located, missed, verdict};
 use crate::arrays::{from_rows, rows, vectors};
 use crate::codomain::CanonicalDomain;
@@ -103,7 +104,7 @@ pub fn register_disks(
             landmarks,
             signals,
             options,
-            is_refined: false,
+            start: Start::Domain,
         };
         let lowered = between.lower(locations, &mut history, &mut phase);
         (locations, met.source, status) = (lowered.locations, lowered.registered, lowered.status);

@@ -16,7 +16,7 @@ use super::landmark_descent::Carrying;
 use super::landmarks::{Landmarks, fewest};
 use super::options::{Energy, RegistrationOptions, SHARE_OF_DOMAIN, START_ANGLE_WEIGHTS};
 use super::result::{CarryingOptions, Registration, SphereRegistration};
-use super::surface::ISOMETRY;
+use super::surface::{ISOMETRY, Start};
 use super::verdict::{located, missed, verdict, worst};
 use crate::alignment::rotation::{best_rotation, rotate};
 use crate::arrays::{from_vectors, vectors};
@@ -37,6 +37,9 @@ const CROWDED: f64 = 0.3;
 /// Angle weight of both maps where features alone lay the spheres over each other: maps that trade areas for angles lay
 /// like parts of two surfaces at like places of the sphere.
 const FEATURE_ANGLE_WEIGHT: f64 = 1.0;
+
+/// Sweeps that even out the maps of coarse meshes on their way to the whole; those of either surface alone get one.
+const SWEEPS: usize = 4;
 
 /// Distance up to which the landmarks of coarse meshes have met; else the whole surfaces are laid over each other.
 const MET: f64 = 1e-9;
@@ -99,6 +102,7 @@ pub fn register_spheres(
         landmarks,
         signals: &signals,
         options,
+        is_coarse: false,
     };
     let laid = match options.energy {
         Energy::Area => pair.laid(options.angle_weight.unwrap_or(0.0), &mut history, observer)?,
@@ -153,6 +157,8 @@ struct Pair<'a, 'f> {
     landmarks: &'a Landmarks<'a>,
     signals: &'a Signals,
     options: &'a RegistrationOptions<'f>,
+    /// Whether they are coarse meshes of others.
+    is_coarse: bool,
 }
 
 /// Two spheres over each other.
@@ -175,7 +181,8 @@ impl Pair<'_, '_> {
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.5 };
         if let Some(laid) = self.laid_coarse_to_fine(history, &mut phase)? {
             let mut phase = Phase { whole: observer, from: 0.5, to: 1.0 };
-            return Ok(self.lowered(laid, true, history, &mut phase));
+            let start = Start::Coarse { is_brief: self.is_coarse };
+            return Ok(self.lowered(laid, start, history, &mut phase));
         }
         let weights =
             if self.is_laid_by_landmarks() { &START_ANGLE_WEIGHTS[..] } else { &[FEATURE_ANGLE_WEIGHT] };
@@ -189,7 +196,7 @@ impl Pair<'_, '_> {
                 laid => laid?,
             };
             let mut phase = Phase { whole: &mut phase, from: SHARE_OF_DOMAIN, to: 1.0 };
-            let laid = self.lowered(laid, false, history, &mut phase);
+            let laid = self.lowered(laid, Start::Domain, history, &mut phase);
             let is_last = laid.status == Status::Cancelled || laid.energy < 1.0 + ISOMETRY;
             if best.as_ref().is_none_or(|best| laid.energy < best.energy) {
                 best = Some(laid);
@@ -215,19 +222,20 @@ impl Pair<'_, '_> {
         let meshes = coarse.meshes();
         let (landmarks, signals) = (coarse.landmarks(), coarse.signals(self.signals));
         let target_points = meshes[1].points();
-        let pair = Pair { meshes, target_points, landmarks: &landmarks, signals: &signals, ..*self };
+        let (landmarks, signals) = (&landmarks, &signals);
+        let pair = Pair { meshes, target_points, landmarks, signals, is_coarse: true, ..*self };
         // 2. Over each other
         let mut phase = Phase { whole: observer, from: 0.1, to: 0.9 };
         let mut unseen = |fraction: f64, message: &str| phase.progress(fraction, message);
         let laid = pair.descended(history, &mut unseen)?;
         let [ours, theirs] = &laid.registered;
-        if pairs(&landmarks, ours, theirs).iter().any(|[p, q]| p.distance(*q) > MET) {
+        if pairs(landmarks, ours, theirs).iter().any(|[p, q]| p.distance(*q) > MET) {
             return Ok(None);
         }
         // 3. Taken to the whole
         let [f0, f1] = [&laid.maps[0], &laid.maps[1]].map(|map| vectors(map.positions.view()));
-        let of_maps = coarse.refined([&f0, &f1], domain);
-        let of_registered = coarse.refined([&laid.registered[0], &laid.registered[1]], domain);
+        let of_maps = coarse.refined([&f0, &f1], domain, 1);
+        let of_registered = coarse.refined([&laid.registered[0], &laid.registered[1]], domain, SWEEPS);
         let (Some([f0, f1]), Some(registered)) = (of_maps, of_registered) else { return Ok(None) };
         let status = laid.status;
         let of_positions = |k: usize, map: Vec<Vector3>| SphereMap::of_positions(self.meshes[k], map, status);
@@ -250,13 +258,7 @@ impl Pair<'_, '_> {
     }
 
     /// After the descent between the surfaces.
-    fn lowered(
-        &self,
-        laid: Laid,
-        is_refined: bool,
-        history: &mut History,
-        observer: &mut dyn Observer,
-    ) -> Laid {
+    fn lowered(&self, laid: Laid, start: Start, history: &mut History, observer: &mut dyn Observer) -> Laid {
         let Laid { registered: [_, target_registered], locations, status, .. } = &laid;
         if *status == Status::Cancelled {
             return laid;
@@ -270,7 +272,7 @@ impl Pair<'_, '_> {
             landmarks: self.landmarks,
             signals: self.signals.clone(),
             options: self.options,
-            is_refined,
+            start,
         };
         let Lowered { locations, registered, energy, status } =
             between.lower(locations.clone(), history, observer);

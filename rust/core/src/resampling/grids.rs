@@ -49,7 +49,7 @@ impl Grid {
     /// [`Error::InvalidOption`].
     pub fn check(&self) -> Result<(), Error> {
         let [rows, columns] = self.shape();
-        let n_cells = rows.checked_mul(columns).unwrap_or(usize::MAX);
+        let n_cells = rows.saturating_mul(columns);
         if !(1..=MOST_CELLS).contains(&n_cells) {
             let (found, expected) = (format!("({rows}, {columns})"), format!("of 1 to {MOST_CELLS} cells"));
             return Err(Error::InvalidOption { name: "shape", found, expected });

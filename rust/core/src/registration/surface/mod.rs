@@ -23,7 +23,7 @@ mod target;
 mod walk;
 
 pub(crate) use density::FaceEnergy;
-pub(crate) use problem::{Pull, SurfaceProblem};
+pub(crate) use problem::{Pull, Start, SurfaceProblem};
 
 use crate::arrays::from_vectors;
 use crate::control::{History, Observer, Status, Watch};
@@ -59,9 +59,10 @@ const STAGES: [Stage; 4] = [
     Stage::new(0.1, 3.0, 12, 20),
 ];
 
-/// The stages from a map between coarse meshes of the surfaces, which begin with a sweep; and those of large ones.
+/// The stages from a map between coarse meshes of the surfaces, which begin with sweeps; and those of large ones, and of
+/// meshes that are themselves coarse.
 const REFINING: [Stage; 2] = [Stage::new(1.0, 0.0, 1, 6), Stage::new(0.1, 3.0, 12, 20)];
-const REFINING_LARGE: [Stage; 2] = [Stage::new(1.0, 0.0, 1, 4), Stage::new(0.1, 3.0, 3, 8)];
+const REFINING_BRIEFLY: [Stage; 2] = [Stage::new(1.0, 0.0, 1, 4), Stage::new(0.1, 3.0, 2, 8)];
 
 /// Sources with more vertices are large.
 const LARGE: usize = 30_000;
@@ -99,10 +100,10 @@ pub(crate) fn descend(
     observer: &mut dyn Observer,
 ) -> Descended {
     // 1. An isometry is the minimum
-    let stages: &[Stage] = match problem.is_refined {
-        false => &STAGES,
-        true if problem.source.n_vertices() > LARGE => &REFINING_LARGE,
-        true => &REFINING,
+    let stages: &[Stage] = match problem.start {
+        Start::Domain => &STAGES,
+        Start::Coarse { is_brief } if is_brief || problem.source.n_vertices() > LARGE => &REFINING_BRIEFLY,
+        Start::Coarse { .. } => &REFINING,
     };
     let mut energy = SurfaceEnergy::new(problem, stages[0].guard);
     let map: Vec<Placed> = parallel::map(start.len(), |vertex| energy.target.placed(start[vertex]));
@@ -135,7 +136,7 @@ pub(crate) fn descend(
     for (k, stage) in stages.iter().enumerate() {
         energy.guard = stage.guard;
         let mut moving = Moving { energy: &energy, motions: &motions, map };
-        if problem.is_refined && k == 0 {
+        if problem.start != Start::Domain && k == 0 {
             (0..SWEEPS).for_each(|_| moving.sweep(&colors));
         }
         descent.done = stages[..k].iter().map(|stage| stage.rounds).sum();

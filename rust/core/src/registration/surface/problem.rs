@@ -18,6 +18,15 @@ pub(crate) struct Pull {
     pub weight: f64,
 }
 
+/// Where the map comes from at which a descent begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Start {
+    /// From maps of both surfaces to the domain.
+    Domain,
+    /// From coarse meshes that are registered; the descent is brief where another one follows on a finer mesh.
+    Coarse { is_brief: bool },
+}
+
 /// A map of one surface onto another whose energy is to be lowered.
 pub(crate) struct SurfaceProblem<'a> {
     /// The surface that is mapped.
@@ -37,8 +46,8 @@ pub(crate) struct SurfaceProblem<'a> {
     /// Signals that should agree: the sum of their squared differences at the source's vertices, weighted by area with
     /// 1 for the whole source, is part of the energy.
     pub signals: Signals,
-    /// Whether the start comes from a map between coarse meshes.
-    pub is_refined: bool,
+    /// Where the map comes from at which the descent begins.
+    pub start: Start,
     /// The energy of each face.
     pub face_energy: FaceEnergy,
 }

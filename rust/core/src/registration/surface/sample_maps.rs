@@ -2,7 +2,7 @@
 //! Small surfaces and maps between them for the tests.
 
 use super::density::FaceEnergy;
-use super::problem::SurfaceProblem;
+use super::problem::{Start, SurfaceProblem};
 use crate::codomain::CanonicalDomain;
 use crate::location::tests::{Map, octasphere, rings};
 use crate::location::{Location, Locator};
@@ -79,7 +79,7 @@ impl Sample {
             held: vec![false; self.source.n_vertices()],
             pulls: Vec::new(),
             signals: Signals::default(),
-            is_refined: false,
+            start: Start::Domain,
             face_energy: FaceEnergy { area_weight: 1.0, angle_weight: 1.0 },
         }
     }

@@ -190,6 +190,18 @@ def test_info_says_what_suits(run, folder):
     assert "genus: 1" in run("info", "torus.obj").out
 
 
+def test_info_says_what_a_saved_result_was_computed_from(run, folder):
+    result = authalic.sphere_map(*meshes.bumpy_ball(), angle_weight=0.5)
+    result.save(folder / "ball.npz")
+    record = run("info", "ball.npz", "--json").record
+    assert record["result"] == "SphereMap" and record["function"] == "sphere_map"
+    assert record["options"]["angle_weight"] == 0.5
+    assert record["authalic"] == authalic.__version__
+    digests = [entry["sha256"] for entry in record["inputs"].values()]
+    assert all(len(digest) == 64 for digest in digests) and digests
+    assert json.loads(run("info", "ball.npz").out) == record
+
+
 def test_info_says_what_is_wrong(run, folder):
     vertices, faces = meshes.octahedron()
     vertices[2] = np.nan

@@ -65,6 +65,16 @@ def load(path: str | os.PathLike[str]) -> Any:
         return _made(table["content"], entries)
 
 
+def provenance_in(path: str | os.PathLike[str]) -> dict[str, Any] | None:
+    """What the result in a file was computed from; None where the file holds no result."""
+    try:
+        with _opened(path) as entries:
+            content: dict[str, Any] = _table(entries, path)["content"]
+            return {"result": content["kind"]} | content["provenance"]
+    except (ValueError, KeyError, TypeError):
+        return None
+
+
 def _described(value: Any, place: str, arrays: Arrays) -> Any:
     """A value as JSON; the arrays in it go to `arrays`, by the names of the attributes that lead to them."""
     if isinstance(value, np.ndarray):

@@ -23,7 +23,8 @@ _FORMAT = click.option("--input-format", type=options.format_names, help="Where 
 def info(surface: Path, input_format: str | None, as_json: bool) -> None:
     """Print what a SURFACE is like, and which maps suit it.
 
-    A surface that no map takes is reported with what is wrong with it; that is no error of this command.
+    A surface that no map takes is reported with what is wrong with it; that is no error of this command. Of a
+    result that was saved in Python: its function, options, versions, and the SHA-256 of its input.
     """
     from ..runs.measure import info_run
 

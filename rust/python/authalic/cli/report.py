@@ -93,6 +93,9 @@ def show_info(record: Mapping[str, Any], as_json: bool, stream: TextIO) -> None:
     if as_json:
         print(json.dumps(record), file=stream)
         return
+    if record["format"] == "result":
+        print(json.dumps(record, indent=2), file=stream)
+        return
     show_record(record, False, stream)
     for key in ("components", "genus", "boundary_loops", "area", "uv_points"):
         if key in record:

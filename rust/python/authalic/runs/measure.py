@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .._files import provenance_in
 from .._native import MeshError, Surface, distortion
 from ..io import FileError, MeshData, Outputs, mesh_format, read_mesh, value_format
 from ..io.files import save_values
@@ -53,7 +54,11 @@ def measure_run(
 
 
 def info_run(source: Path, *, input_format: str | None = None) -> Record:
-    """What a mesh is like: counts, topology, which maps suit it, or the first thing that is wrong with it."""
+    """What a mesh is like: counts, topology, which maps suit it, or the first thing that is wrong with it; what a saved
+    result was computed from.
+    """
+    if source.suffix == ".npz" and (provenance := provenance_in(source)) is not None:
+        return {"command": "info", "input": str(source), "format": "result"} | provenance
     mesh, record = read_input(source, input_format, "info", {})
     record["format"] = mesh_format(source, input_format).name
     record["uv_points"] = 0 if mesh.uv is None else len(mesh.uv)

@@ -152,8 +152,27 @@ def test_register_carries_landmarks_and_values(run, folder):
     assert result.record["folded"] == 0
 
 
+def test_register_takes_the_librarys_options(run, folder):
+    source, target = meshes.bumpy_ball(), meshes.radial(lambda x, y, z: 1 + 0.2 * x)
+    write_mesh(folder / "target.obj", MeshData(*target))
+    rows = ["0,0,inf", "1,1,2.5", "2,2,inf", "5,5,1"]
+    (folder / "landmarks.csv").write_text("\n".join(rows))
+    pairs = {"source_landmarks": [0, 1, 2, 5], "target_landmarks": [0, 1, 2, 5]}
+    words = ("--landmarks", "landmarks.csv", "--fill-holes", "--position-weight", "0.5", "--json")
+    soft = run("register", "ball.obj", "target.obj", "soft.npz", *words)
+    expected = authalic.register_spheres(
+        source, target, **pairs, weights=[np.inf, 2.5, np.inf, 1], position_weight=0.5, fill_holes=True
+    )
+    assert soft.code == 0 and np.array_equal(read_mesh(folder / "soft.npz").vertices, expected.positions)
+    (folder / "landmarks.csv").write_text("0 0\n1 1\n2 2\n5 5\n")
+    words = ("--landmarks", "landmarks.csv", "--energy", "area", "--json")
+    exact = run("register", "ball.obj", "target.obj", "area.npz", *words)
+    expected = authalic.register_spheres(source, target, **pairs, energy="area")
+    assert exact.code == 0 and np.array_equal(read_mesh(folder / "area.npz").vertices, expected.positions)
+
+
 def test_register_refuses_pairs_that_are_none(run, folder):
-    (folder / "landmarks.csv").write_text("1,2,3\n")
+    (folder / "landmarks.csv").write_text("1,2,3,4\n")
     result = run("register", "ball.obj", "ball.obj", "out.obj", "--landmarks", "landmarks.csv")
     assert result.code == 3 and "counted from 0" in result.err
 

@@ -70,7 +70,8 @@ def provenance_in(path: str | os.PathLike[str]) -> dict[str, Any] | None:
     try:
         with _opened(path) as entries:
             content: dict[str, Any] = _table(entries, path)["content"]
-            return {"result": content["kind"]} | content["provenance"]
+            provenance: dict[str, Any] = content["provenance"]
+            return {"result": content["kind"]} | provenance
     except (ValueError, KeyError, TypeError):
         return None
 

@@ -17,7 +17,8 @@ from .options import Frame
 @click.option(
     "--landmarks",
     type=options.existing,
-    help="Text: a vertex of SOURCE and one of TARGET in each row, counted from 0.",
+    help="Text: a vertex of SOURCE and one of TARGET in each row, counted from 0; a third column has the "
+    "weights of soft pairs, inf for exact ones.",
 )
 @click.option(
     "--curves",
@@ -36,6 +37,14 @@ from .options import Frame
     default=None,
     help="Values at the vertices of TARGET, and the file for them at those of SOURCE.",
 )
+@click.option(
+    "--energy",
+    type=click.Choice(["surface", "area", "harmonic"]),
+    help="What is kept: shapes between the surfaces, or the papers' energy.  [default: surface]",
+)
+@click.option("--fill-holes", is_flag=True, default=None, help="Fill holes for the time being.")
+@click.option("--feature-weight", type=float, help="How strongly values pull.  [default: 1]")
+@click.option("--position-weight", type=float, help="How strongly each vertex is pulled to its own position.")
 @click.option("--area-weight", type=float, help="[default: 1]")
 @click.option("--angle-weight", type=float, help="[default: 1]")
 @options.common

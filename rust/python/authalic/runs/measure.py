@@ -54,8 +54,9 @@ def measure_run(
 
 
 def info_run(source: Path, *, input_format: str | None = None) -> Record:
-    """What a mesh is like: counts, topology, which maps suit it, or the first thing that is wrong with it; what a saved
-    result was computed from.
+    """What a mesh is like: counts, topology, which maps suit it, or the first thing that is wrong with it.
+
+    Of a saved result, what it was computed from.
     """
     if source.suffix == ".npz" and (provenance := provenance_in(source)) is not None:
         return {"command": "info", "input": str(source), "format": "result"} | provenance

@@ -39,7 +39,8 @@ def register_run(
         The source's faces with its vertices at their places on the target. As npz it also has `triangles` and
         `barycentric`, the place of each vertex on the target.
     landmarks : Path, optional
-        Text with a vertex of the source and one of the target in each row, counted from 0.
+        Text with a vertex of the source and one of the target in each row, counted from 0; with the weight of
+        a soft pair in a third column, inf for exact pairs.
     curves : Path, optional
         JSON {"source": [[vertices], …], "target": [[vertices], …]}: a registration by curves.
     features : two Paths, optional
@@ -95,20 +96,25 @@ def _register(
             raise FileError(curves, 'it must hold {"source": [[vertices], …], "target": [[vertices], …]}')
         options |= {f"{side}_curves": pair[side] for side in ("source", "target")}
         return register_hyperbolic(*surfaces, **options, progress=progress)
-    if landmarks is not None or not surfaces[0].is_closed:
-        pairs = np.empty((0, 2), int) if landmarks is None else _pairs(landmarks)
+    is_closed = surfaces[0].is_closed or (bool(options.get("fill_holes")) and surfaces[1].is_closed)
+    if landmarks is not None or not is_closed:
+        pairs, weights = (np.empty((0, 2), int), None) if landmarks is None else _pairs(landmarks)
         options |= {"source_landmarks": pairs[:, 0], "target_landmarks": pairs[:, 1]}
-    register = register_spheres if surfaces[0].is_closed else register_disks
+        options |= given({"weights": weights})
+    register = register_spheres if is_closed else register_disks
     return register(*surfaces, **options, progress=progress)
 
 
-def _pairs(path: Path) -> np.ndarray:
+def _pairs(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
+    """The pairs, and their weights where there is a third column."""
     rows = read_table(path)
-    if rows.ndim != 2 or rows.shape[1] != 2 or (rows != rows.round()).any():
+    if rows.ndim != 2 or rows.shape[1] not in (2, 3) or (rows[:, :2] != rows[:, :2].round()).any():
         raise FileError(
-            path, "each row must have a vertex of the source and one of the target, counted from 0"
+            path,
+            "each row must have a vertex of the source and one of the target, counted from 0, and may have a "
+            "weight",
         )
-    return rows.astype(np.int64)
+    return rows[:, :2].astype(np.int64), rows[:, 2] if rows.shape[1] == 3 else None
 
 
 def _figures(found: Registration) -> Record:

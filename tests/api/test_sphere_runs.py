@@ -110,7 +110,7 @@ def test_a_restart_continues_where_the_start_map_lies(method):
 
 @methods
 def test_a_start_map_of_any_radius_is_put_onto_the_sphere(method):
-    start = authalic.sphere_map(*BUMPY).positions
+    start = authalic.sphere_map(*BUMPY).positions.copy()
     radius = np.random.default_rng(1).uniform(1e-3, 1e3, (len(start), 1))
     for scale in (1, radius, 1e-300, 1e300):
         result = authalic.sphere_map(*BUMPY, method=method, initial=scale * start, max_iterations=0)
@@ -129,7 +129,7 @@ def test_the_surface_itself_is_a_start_map(name, method):
 @methods
 @pytest.mark.parametrize("limit", [0, 5, None])
 def test_folds_of_a_start_map_are_mended(method, limit):
-    start = authalic.sphere_map(*BUMPY).positions
+    start = authalic.sphere_map(*BUMPY).positions.copy()
     start[[100, 200, 250]] *= -1
     assert len(oracle.folded_on_sphere(start, BUMPY.faces)) > 5
     result = authalic.sphere_map(*BUMPY, initial=start, method=method, max_iterations=limit)

@@ -71,7 +71,7 @@ def onto_another_sphere() -> tuple[MeshObject, MeshObject]:
 
 def ring_around(obj: MeshObject, vertex: int) -> list[int]:
     """The closed path around a vertex of a mesh of triangles."""
-    around = [list(face.vertices) for face in obj.data.polygons if vertex in face.vertices]
+    around = [corners for corners in map(list, (face.vertices for face in obj.data.polygons)) if vertex in corners]
     turned = [face[face.index(vertex) :] + face[: face.index(vertex)] for face in around]
     following = {first: second for _, first, second in turned}
     ring = [turned[0][1]]

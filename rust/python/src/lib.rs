@@ -2,6 +2,9 @@
 //! Python bindings of the crate `authalic`: the module `authalic._native`, re-exported by the package
 //! `authalic`.
 
+// The docstrings are Python's: [0] in an example is no link.
+#![allow(rustdoc::broken_intra_doc_links)]
+
 mod arrays;
 mod disk;
 mod distortion;

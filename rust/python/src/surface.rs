@@ -348,7 +348,7 @@ pub enum Given {
 impl Given {
     /// The first arguments of a function: a surface, or vertices and faces.
     pub fn new(vertices: &Bound<'_, PyAny>, faces: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
-        match (Self::whole(vertices)?, faces) {
+        match (Self::whole(vertices, ["vertices", "faces"])?, faces) {
             (Some(given), None) => Ok(given),
             (Some(_), Some(_)) => Err(too_many()),
             (None, Some(faces)) => Self::arrays(vertices, faces, ["vertices", "faces"]),
@@ -359,12 +359,12 @@ impl Given {
     }
 
     /// A surface in one object: a Surface, Patch or Repaired, or a mesh object of another library.
-    fn whole(object: &Bound<'_, PyAny>) -> PyResult<Option<Self>> {
+    fn whole(object: &Bound<'_, PyAny>, names: [&'static str; 2]) -> PyResult<Option<Self>> {
         if let Some(handle) = handle(object) {
             return Ok(Some(Self::Handle(handle)));
         }
         let Some((vertices, faces)) = mesh_parts(object)? else { return Ok(None) };
-        Self::arrays(&vertices, &faces, ["vertices", "faces"]).map(Some)
+        Self::arrays(&vertices, &faces, names).map(Some)
     }
 
     /// The first arguments of a function on a map: a surface and its image, or vertices, faces and image.
@@ -375,7 +375,7 @@ impl Given {
     ) -> PyResult<(Self, &'a Bound<'py, PyAny>)> {
         let py = vertices.py();
         let no_image = || missing(py, "image", "real numbers of shape (n, 2) or (n, 3)");
-        let Some(given) = Self::whole(vertices)? else {
+        let Some(given) = Self::whole(vertices, ["vertices", "faces"])? else {
             let given = Self::new(vertices, faces)?;
             return Ok((given, image.ok_or_else(no_image)?));
         };
@@ -389,7 +389,7 @@ impl Given {
 
     /// One argument of the given name: a surface, or a pair (vertices, faces).
     pub fn pair(object: &Bound<'_, PyAny>, [name, vertices, faces]: [&'static str; 3]) -> PyResult<Self> {
-        if let Some(given) = Self::whole(object)? {
+        if let Some(given) = Self::whole(object, [vertices, faces])? {
             return Ok(given);
         }
         let parts: Vec<Bound<'_, PyAny>> =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Fillings of boundary loops: a cone, whose tip [`apex_of`] finds, or a smooth [`membrane`].
+//! Fillings of boundary loops: a cone, whose tip [`apex_of`] finds, or a smooth [`membrane()`].
 
 mod apex;
 mod membrane;

@@ -3,7 +3,7 @@
 //!
 //! In rounds, since loops that meet are cut one after the other:
 //!
-//! 1. Two loops for each handle, by a tree and a cotree ([`generators`]).
+//! 1. Two loops for each handle, by a tree and a cotree ([`generators()`]).
 //! 2. For each of them the shortest loop that crosses it once, and the shortest that crosses that once ([`crossing`]):
 //!    of a tube through a body one runs around the tube and the other along it.
 //! 3. The shortest of these loops are cut, as many as do not meet and together do not divide the surface ([`surgery`]).

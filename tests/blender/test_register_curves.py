@@ -71,7 +71,8 @@ def onto_another_sphere() -> tuple[MeshObject, MeshObject]:
 
 def ring_around(obj: MeshObject, vertex: int) -> list[int]:
     """The closed path around a vertex of a mesh of triangles."""
-    around = [corners for corners in map(list, (face.vertices for face in obj.data.polygons)) if vertex in corners]
+    faces: list[list[int]] = [list(face.vertices) for face in obj.data.polygons]
+    around = [face for face in faces if vertex in face]
     turned = [face[face.index(vertex) :] + face[: face.index(vertex)] for face in around]
     following = {first: second for _, first, second in turned}
     ring = [turned[0][1]]

@@ -30,6 +30,7 @@ def monkey() -> MeshObject:
     bpy.ops.mesh.primitive_monkey_add()
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.uv.select_all(action="SELECT")
     bpy.ops.uv.seams_from_islands()
     bpy.ops.object.mode_set(mode="OBJECT")
     return meshes.subdivided(bpy.context.object, 2)

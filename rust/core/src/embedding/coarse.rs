@@ -11,7 +11,6 @@
 use super::conformal_star::ConformalStar;
 use super::decimation::{Collapse, Decimation};
 use super::kernel::kernel_centroid;
-
 use crate::codomain::CanonicalDomain;
 use crate::control::Observer;
 use crate::mesh::{TriangleMesh, Vertex};

@@ -105,7 +105,7 @@ pub fn register_spheres(
         is_coarse: false,
     };
     let laid = match options.energy {
-        Energy::Area => pair.laid(options.angle_weight.unwrap_or(0.0), &mut history, observer)?,
+        Energy::Area => pair.laid(options.angle_weight_in_domain(), &mut history, observer)?,
         Energy::Surface => pair.descended(&mut history, observer)?,
     };
     let Laid { maps: [f0, f1], registered: [registered, target_registered], locations, status, .. } = laid;
@@ -220,9 +220,8 @@ impl Pair<'_, '_> {
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.1 };
         let Some(coarse) = CoarsePair::new(self.meshes, self.landmarks, &mut phase)? else { return Ok(None) };
         let meshes = coarse.meshes();
-        let (landmarks, signals) = (coarse.landmarks(), coarse.signals(self.signals));
+        let (landmarks, signals) = (&coarse.landmarks(), &coarse.signals(self.signals));
         let target_points = meshes[1].points();
-        let (landmarks, signals) = (&landmarks, &signals);
         let pair = Pair { meshes, target_points, landmarks, signals, is_coarse: true, ..*self };
         // 2. Over each other
         let mut phase = Phase { whole: observer, from: 0.1, to: 0.9 };

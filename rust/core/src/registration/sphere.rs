@@ -41,7 +41,7 @@ const FEATURE_ANGLE_WEIGHT: f64 = 1.0;
 /// Sweeps that even out the maps of coarse meshes on their way to the whole; those of either surface alone get one.
 const SWEEPS: usize = 4;
 
-/// Distance up to which the landmarks of coarse meshes have met; else the whole surfaces are laid over each other.
+/// Distance up to which exact landmarks of coarse meshes have met; else the whole surfaces are laid over each other.
 const MET: f64 = 1e-9;
 
 /// Weight, against that of a landmark, of the wish to rotate as little as possible.
@@ -209,7 +209,7 @@ impl Pair<'_, '_> {
     }
 
     /// Lays coarse meshes of the spheres over each other, and takes their maps to the whole; `None` where the spheres are
-    /// small, or where the landmarks of the coarse meshes do not meet.
+    /// small, or where exact landmarks of the coarse meshes do not meet.
     fn laid_coarse_to_fine(
         &self,
         history: &mut History,
@@ -228,7 +228,10 @@ impl Pair<'_, '_> {
         let mut unseen = |fraction: f64, message: &str| phase.progress(fraction, message);
         let laid = pair.descended(history, &mut unseen)?;
         let [ours, theirs] = &laid.registered;
-        if pairs(landmarks, ours, theirs).iter().any(|[p, q]| p.distance(*q) > MET) {
+        let is_apart = |(pair, [p, q]): (usize, &[Vector3; 2])| {
+            self.options.pair_weight(pair).is_infinite() && p.distance(*q) > MET
+        };
+        if pairs(landmarks, ours, theirs).iter().enumerate().any(is_apart) {
             return Ok(None);
         }
         // 3. Taken to the whole

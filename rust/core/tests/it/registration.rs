@@ -142,6 +142,28 @@ fn a_large_sphere_onto_itself_is_the_identity() {
     assert_eq!(found.status, Status::Converged);
 }
 
+/// Soft landmarks need not meet for coarse meshes to be taken to the whole.
+#[test]
+fn large_surfaces_with_soft_landmarks_are_laid_over_each_other_once() {
+    let source =
+        radial("wavy", 5, |[x, y, z]| 1.0 + 0.15 * (3.0 * x).sin() * (2.0 * y).cos() + 0.1 * z).mesh();
+    let target = ellipsoid(5, [1.0, 1.2, 0.9]).mesh();
+    let landmarks = Landmarks { source: &[0, 1, 2, 3, 700], target: &[0, 1, 2, 3, 900] };
+    let n_descents = |weights: &[f64]| {
+        let (mut count, mut last) = (0, String::new());
+        let mut observer = |_: f64, message: &str| {
+            count += usize::from(message == "Keeping shapes" && last != message);
+            last = message.to_owned();
+            true
+        };
+        let options = RegistrationOptions { weights: Some(weights), ..Default::default() };
+        register_spheres(&source, &target, &landmarks, &options, &mut observer).unwrap();
+        count
+    };
+    let exact = f64::INFINITY;
+    assert_eq!(n_descents(&[exact, exact, exact, exact, 0.1]), n_descents(&[exact; 5]));
+}
+
 #[test]
 fn the_inverse_exchanges_both_surfaces() {
     let (source, target) = (bumpy_disk(7).mesh(), cap(8, 1.4).mesh());

@@ -137,6 +137,45 @@ assert not set(sys.modules) & set("{optional}".split()), set(sys.modules) & set(
     assert done.returncode == 0, done.stderr
 
 
+def test_the_library_is_loaded_when_it_is_used_first():
+    code = """
+import sys, authalic
+assert "numpy" not in sys.modules and "sphere_map" in dir(authalic)
+authalic.sphere_map
+assert "numpy" in sys.modules and authalic.sphere_map is authalic._native.sphere_map
+try:
+    authalic.nothing
+except AttributeError as error:
+    assert "nothing" in str(error)
+else:
+    raise AssertionError
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_a_command_loads_no_more_than_it_needs(folder):
+    """What it loads takes the time from its start to the map."""
+    write_mesh(folder / "lh.white", MeshData(*meshes.bumpy_ball()))
+    code = """
+import gc, os, sys
+from authalic.cli import main
+sys.argv = ["authalic", "sphere", "lh.white", "--quiet"]
+assert main() == 0
+slow = "nibabel trimesh meshio scipy dask pyarrow rich.console tempfile asyncio importlib.metadata"
+assert not set(sys.modules) & set(slow.split()), set(sys.modules) & set(slow.split())
+assert gc.isenabled() and gc.get_freeze_count()
+print(os.environ["OPENBLAS_NUM_THREADS"])
+"""
+    for chosen in ({}, {"OPENBLAS_NUM_THREADS": "7"}):
+        environment = {key: value for key, value in os.environ.items() if "THREADS" not in key} | chosen
+        done = subprocess.run(
+            [sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True
+        )
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.strip() == chosen.get("OPENBLAS_NUM_THREADS", "1")
+
+
 def test_the_wheel_names_its_extras_and_its_command():
     metadata = importlib.metadata.metadata("authalic")
     assert {"cli", "io", "neuro", "batch"} <= set(metadata.get_all("Provides-Extra"))

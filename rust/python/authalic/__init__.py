@@ -8,51 +8,54 @@
 (5, 2)
 """
 
-from ._files import load
-from ._native import (
-    ERROR_KINDS,
-    WARNING_KINDS,
-    Certificates,
-    DiskMap,
-    Distortion,
-    HyperbolicStructure,
-    Layout,
-    MeshError,
-    Packing,
-    Pants,
-    Patch,
-    Refinement,
-    Registration,
-    Repaired,
-    Result,
-    Seams,
-    SolverError,
-    SphereMap,
-    Strain,
-    Surface,
-    Untangled,
-    Unwrap,
-    __version__,
-    cut,
-    disk_map,
-    disk_maps,
-    distortion,
-    distortions,
-    homotopy,
-    hyperbolic_structure,
-    pack,
-    register_disks,
-    register_hyperbolic,
-    register_spheres,
-    repair,
-    seams,
-    set_threads,
-    sphere_map,
-    stretch_hessian,
-    untangle,
-    unwrap,
-)
-from ._warnings import RegistrationWarning
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ._files import load
+    from ._native import (
+        ERROR_KINDS,
+        WARNING_KINDS,
+        Certificates,
+        DiskMap,
+        Distortion,
+        HyperbolicStructure,
+        Layout,
+        MeshError,
+        Packing,
+        Pants,
+        Patch,
+        Refinement,
+        Registration,
+        Repaired,
+        Result,
+        Seams,
+        SolverError,
+        SphereMap,
+        Strain,
+        Surface,
+        Untangled,
+        Unwrap,
+        __version__,
+        cut,
+        disk_map,
+        disk_maps,
+        distortion,
+        distortions,
+        homotopy,
+        hyperbolic_structure,
+        pack,
+        register_disks,
+        register_hyperbolic,
+        register_spheres,
+        repair,
+        seams,
+        set_threads,
+        sphere_map,
+        stretch_hessian,
+        untangle,
+        unwrap,
+    )
+    from ._warnings import RegistrationWarning
 
 __all__ = [
     "ERROR_KINDS",
@@ -99,3 +102,18 @@ __all__ = [
     "untangle",
     "unwrap",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Imports the library on first use, so that the command can set up its process before numpy is loaded."""
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from . import _files, _native, _warnings
+
+    homes = {"load": _files, "RegistrationWarning": _warnings}
+    value = globals()[name] = getattr(homes.get(name, _native), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

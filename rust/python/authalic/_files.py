@@ -7,7 +7,6 @@ numbers as they are, arrays as the names of their entries, results within the re
 
 import json
 import os
-import secrets
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -139,7 +138,7 @@ def _table(entries: Mapping[str, Any], path: str | os.PathLike[str]) -> dict[str
 
 def _write(path: Path, arrays: Arrays) -> None:
     """Writes beside the place and moves there, so that there is no half file at any time."""
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
+    temporary = path.with_name(f".{path.name}.{os.urandom(4).hex()}")
     try:
         with temporary.open("xb") as file:
             np.savez(file, **arrays)  # type: ignore[arg-type]

@@ -10,8 +10,7 @@ from typing import Any
 from .._native import MeshError, SolverError, __version__, set_threads
 from ..io import FileError, MissingExtra
 from ..runs.disk import disk_run
-from ..runs.measure import problem
-from ..runs.record import Record
+from ..runs.record import Record, problem
 from ..runs.sphere import sphere_run
 from ..runs.unwrap import unwrap_run
 from .store import write_record

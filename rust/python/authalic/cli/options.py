@@ -3,7 +3,6 @@
 
 import contextlib
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, TypeVar
@@ -120,6 +119,8 @@ def files(source: Path, output: Path) -> Iterator[tuple[Path, Path]]:
     if STREAM not in (source, output):
         yield source, output
         return
+    import tempfile
+
     with tempfile.TemporaryDirectory(prefix="authalic-") as folder:
         if source == STREAM:
             source = Path(folder) / "stdin"

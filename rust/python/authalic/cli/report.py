@@ -9,7 +9,7 @@ from typing import Any, TextIO
 
 from .._native import MeshError, SolverError
 from ..io import FileError, MissingExtra
-from ..runs.measure import problem
+from ..runs.record import problem
 
 
 class Exit(IntEnum):

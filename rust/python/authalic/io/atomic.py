@@ -3,7 +3,6 @@
 
 import contextlib
 import os
-import secrets
 from pathlib import Path
 from types import TracebackType
 
@@ -64,7 +63,7 @@ class Outputs:
         target = Path(path).resolve()
         if not target.parent.is_dir():
             raise FileNotFoundError(f"there is no folder {target.parent} to write {target.name} into")
-        temporary = target.parent / f"{PREFIX}{os.getpid()}-{secrets.token_hex(4)}-{target.name}"
+        temporary = target.parent / f"{PREFIX}{os.getpid()}-{os.urandom(4).hex()}-{target.name}"
         self._places[temporary] = target
         return temporary
 

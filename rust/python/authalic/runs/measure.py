@@ -5,11 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from .._files import provenance_in
 from .._native import MeshError, Surface, distortion
 from ..io import FileError, MeshData, Outputs, mesh_format, read_mesh, value_format
 from ..io.files import save_values
-from .record import Record, areal_distortion, distortion_figures, read_input
+from .record import Record, areal_distortion, distortion_figures, problem, read_input
 
 
 def measure_run(
@@ -58,6 +57,8 @@ def info_run(source: Path, *, input_format: str | None = None) -> Record:
 
     Of a saved result, what it was computed from.
     """
+    from .._files import provenance_in
+
     if source.suffix == ".npz" and (provenance := provenance_in(source)) is not None:
         return {"command": "info", "input": str(source), "format": "result"} | provenance
     mesh, record = read_input(source, input_format, "info", {})
@@ -80,13 +81,6 @@ def info_run(source: Path, *, input_format: str | None = None) -> Record:
         "boundary_loops": len(surface.boundary_loops),
         "suits": _suited(surface),
     }
-
-
-def problem(error: Exception) -> Record:
-    """The data of an error of the library."""
-    fields = ("kind", "side", "curve", "second_curve", "indices", "count")
-    data = {key: getattr(error, key, None) for key in fields}
-    return {"message": str(error)} | {key: value for key, value in data.items() if value is not None}
 
 
 def _map(

@@ -58,6 +58,13 @@ def given(options: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in options.items() if value is not None}
 
 
+def problem(error: Exception) -> Record:
+    """The data of an error of the library."""
+    fields = ("kind", "side", "curve", "second_curve", "indices", "count")
+    data = {key: getattr(error, key, None) for key in fields}
+    return {"message": str(error)} | {key: value for key, value in data.items() if value is not None}
+
+
 def areal_distortion(vertices: np.ndarray, faces: np.ndarray, image: np.ndarray) -> np.ndarray:
     """log₂ of each vertex's share of the image's area over its share of the surface's, (n,).
 

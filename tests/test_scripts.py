@@ -183,6 +183,7 @@ OF_THE_WHEEL = {"wheel", "types", "docstrings", "python", "extension", "docs"} |
         ("scripts/docs", {"ruff", "python"}),
         ("scripts/lib/bench/tables/main.py", {"ruff", "python"}),
         ("scripts/requirements/peer-lapy.txt", set()),
+        ("scripts/requirements/surfaces.txt", {"python"}),
         ("scripts/requirements/docs.txt", {"docs"}),
         ("CITATION.cff", {"python"}),
         ("scripts/requirements/docstrings.txt", {"docstrings"}),

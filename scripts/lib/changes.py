@@ -56,6 +56,7 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("scripts/docs", {"ruff": (), "python": PROJECT}),
     ("scripts/demo", {"ruff": (), "python": PROJECT}),
     ("scripts/requirements/docstrings.txt", _whole("docstrings")),
+    ("scripts/requirements/surfaces.txt", _whole("python")),
     ("scripts/requirements/docs.txt", _whole("docs")),
     ("scripts/requirements/peer-*", {}),
     # The manual, which the zip holds.

@@ -74,13 +74,13 @@ def any_blender() -> Environment:
     return blender_oldest()
 
 
-def add(environment: Environment, requirements: str) -> None:
-    """Installs a further requirements file into an environment, once."""
+def add(environment: Environment, requirements: str, *options: str) -> None:
+    """Installs a further requirements file into an environment, once; `options` are for pip."""
     path = REQUIREMENTS / f"{requirements}.txt"
     stamp = environment.folder / f"{requirements}.stamp"
     wanted = content_hash([path])
     if _read(stamp) != wanted:
-        run([environment.python, "-m", "pip", "install", "--quiet", "-r", path])
+        run([environment.python, "-m", "pip", "install", "--quiet", *options, "-r", path])
         stamp.write_text(wanted)
 
 

@@ -147,6 +147,7 @@ def check_docstrings(log: Path) -> Count:
 
 def test_python(log: Path, places: tuple[str, ...] = _PYTHON_TESTS) -> Count:
     install_wheel(log)
+    environment.add(environment.dev(), "surfaces", "--no-deps")
     return _pytest(environment.dev(), places, {}, log, _SIDE_BY_SIDE)
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Real meshes: the small ones in tests/data, and those of a data folder, AUTHALIC_DATA or ../shared/data."""
 
+import importlib.util
 import os
 from pathlib import Path
 
@@ -21,6 +22,14 @@ def file(name):
         if (folder / name).exists():
             return folder / name
     pytest.skip(f"no data folder with {name} (AUTHALIC_DATA)")
+
+
+def fsaverage5(name):
+    """The path of a file of the cortex fsaverage5, such as "white_left.gii.gz", from the package nilearn."""
+    package = importlib.util.find_spec("nilearn")
+    if package is None:
+        pytest.skip("no package nilearn, which has the cortex fsaverage5")
+    return Path(package.origin).parent / "datasets" / "data" / "fsaverage5" / name
 
 
 def each(*kinds):

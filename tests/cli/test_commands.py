@@ -48,9 +48,10 @@ def test_a_cortex_becomes_a_sphere_that_freesurfer_and_nibabel_read(run, folder)
 
 def test_the_cortex_of_fsaverage5_keeps_its_areas(run, folder):
     nibabel_io = pytest.importorskip("nibabel.freesurfer.io")
-    with np.load(real_meshes.file("brain/fsaverage5_left_10242.npz")) as arrays:
-        nibabel_io.write_geometry("lh.white", arrays["V_white"], arrays["F"])
-        nibabel_io.write_geometry("lh.sphere", arrays["V_sphere"], arrays["F"])
+    for name in ("white", "sphere"):
+        mesh = read_mesh(real_meshes.fsaverage5(f"{name}_left.gii.gz"))
+        nibabel_io.write_geometry(f"lh.{name}", mesh.vertices, mesh.faces)
+    assert mesh.vertices.shape == (10242, 3)
     record = run("sphere", "lh.white", "--json").record
     measured = run("measure", "lh.white", "lh.authalic.sphere", "--json").record
     theirs = run("measure", "lh.white", "lh.sphere", "--json").record

@@ -157,6 +157,33 @@ def test_the_citation_is_of_this_version() -> None:
     assert re.findall(r"(?m)^license: (.+)$", text) == ["[MIT, Apache-2.0]"]
 
 
+def badge(name: str) -> str:
+    """The words on a badge."""
+    text = (ROOT / "docs" / "badges" / f"{name}.svg").read_text(encoding="utf-8")
+    [label] = re.findall(r'aria-label="(.+)"', text)
+    assert f"<title>{label}</title>" in text
+    assert label == ": ".join(re.findall(r"<text .*>(.+)</text>", text))
+    return label
+
+
+def test_badges_say_what_is_so() -> None:
+    manifest = (ROOT / "addon" / "blender_manifest.toml.in").read_text(encoding="utf-8")
+    project = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    [blender] = re.findall(r'(?m)^blender_version_min = "(\d+\.\d+)\.0"$', manifest)
+    [python] = re.findall(r'(?m)^requires-python = ">=(.+)"$', project)
+    [license] = re.findall(r'(?m)^license = "(.+)"$', project)
+    [addon_license] = re.findall(r'(?m)^license = \["SPDX:(.+)-or-later"\]$', manifest)
+    assert badge("version") == f"version: {version()}"
+    assert badge("blender") == f"Blender: {blender} LTS or newer"
+    assert badge("python") == f"Python: {python} or newer"
+    assert badge("license") == f"license: {license.replace('OR', 'or')}, add-on {addon_license}"
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    for name in re.findall(r"docs/badges/(\w+)\.svg", readme):
+        assert (
+            f"[{badge(name).replace(': ', ' ', 1).replace('license ', '')}](docs/badges/{name}.svg)" in readme
+        )
+
+
 @documents
 def test_named_operators_exist(document: Path) -> None:
     known = {name for name in literals(ROOT / "addon") if name.startswith("authalic.")}

@@ -16,7 +16,7 @@ BLENDER = ("blender-4.2", "blender-5")
 INSTALLED = (*BLENDER, "window")
 BUILT = ("wheel", "types", "docstrings", "python", "extension", "docs", *INSTALLED)
 RUST = ("rustfmt", "clippy", "rust", "rustdoc")
-EVERYTHING = ("environments", *RUST, "ruff", *BUILT)
+EVERYTHING = ("environments", *RUST, "ruff", "workflows", *BUILT)
 STRUCTURE = ("tests/test_architecture.py", "tests/test_docs.py")
 PROJECT = (*STRUCTURE, "tests/test_scripts.py")
 _OF_TUTORIAL = ("tests/blender/test_tutorial.py",)
@@ -55,6 +55,12 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("scripts/build", {"ruff": (), "python": PROJECT}),
     ("scripts/docs", {"ruff": (), "python": PROJECT}),
     ("scripts/demo", {"ruff": (), "python": PROJECT}),
+    ("scripts/release", {"ruff": (), "python": PROJECT}),
+    ("scripts/lib/release/*", {"ruff": (), "python": PROJECT}),
+    ("scripts/licenses.*", {"python": PROJECT}),
+    (".github/*", {"workflows": (), "python": PROJECT}),
+    ("scripts/requirements/workflows.txt", _whole("workflows")),
+    ("scripts/requirements/release.txt", {}),
     ("scripts/requirements/docstrings.txt", _whole("docstrings")),
     ("scripts/requirements/surfaces.txt", _whole("python")),
     ("scripts/requirements/docs.txt", _whole("docs")),
@@ -67,6 +73,7 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("docs/tutorials/artist.md", {"python": PROJECT, "docs": (), **dict.fromkeys(BLENDER, _OF_TUTORIAL)}),
     ("docs/*.py", {"ruff": (), "python": PROJECT, "docs": ()}),
     ("docs/*", {"python": PROJECT, "docs": ()}),
+    ("THIRD-PARTY-LICENSES.md", {"wheel": (), "python": PROJECT, "extension": ()}),
     ("*.md", {"python": PROJECT, "docs": ()}),
     ("CITATION.cff", {"python": PROJECT}),
     ("*", _whole(*EVERYTHING)),

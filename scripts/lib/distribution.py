@@ -5,32 +5,48 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import sysconfig
 from pathlib import Path
 
+import changelog
 import environment
 import manual
 from environment import Environment
 from shell import DIST, OUT, ROOT, Unavailable, content_hash, files_below, run, say, version
 
-WHEEL_SOURCES = ("Cargo.toml", "Cargo.lock", "pyproject.toml", "README.md", "rust")
+THIRD_PARTY = "THIRD-PARTY-LICENSES.md"
+"""The licenses of the crates that are compiled into the wheel."""
+WHEEL_SOURCES = ("Cargo.toml", "Cargo.lock", "pyproject.toml", "README.md", THIRD_PARTY, "rust")
+EXTENSION_SOURCES = ("addon", "docs/blender.md", "scripts/lib/manual.py", THIRD_PARTY)
 PORTABLE = ("--zig", "--compatibility", "manylinux_2_28")
-# Blender's names of platforms by the tags of wheels.
+# Blender's names of platforms by what the tags of wheels begin and end with. Blender has no build for musl.
 _PLATFORMS = {
-    "linux-x86_64": "linux-x64",
-    "linux-aarch64": "linux-arm64",
-    "macosx-x86_64": "macos-x64",
-    "macosx-arm64": "macos-arm64",
-    "win-amd64": "windows-x64",
-    "win-arm64": "windows-arm64",
+    ("linux", "x86_64"): "linux-x64",
+    ("linux", "aarch64"): "linux-arm64",
+    ("manylinux", "x86_64"): "linux-x64",
+    ("manylinux", "aarch64"): "linux-arm64",
+    ("macosx", "x86_64"): "macos-x64",
+    ("macosx", "arm64"): "macos-arm64",
+    ("win", "amd64"): "windows-x64",
+    ("win", "arm64"): "windows-arm64",
 }
+
+
+# zip files have local times.
+_UTC = {"TZ": "UTC0"}
 
 
 def platform() -> str:
     """Blender's name of this machine's platform, e.g. "linux-x64"."""
-    words = sysconfig.get_platform().split("-")
-    return _PLATFORMS.get(f"{words[0]}-{words[-1]}", f"{words[0]}-{words[-1]}")
+    tag = sysconfig.get_platform().replace("-", "_")
+    return _platform_of_tag(tag) or tag
+
+
+def platform_of(wheel: Path) -> str | None:
+    """Blender's name of the platform that a wheel is for, by its name; None if there is no Blender for it."""
+    return _platform_of_tag(wheel.stem.split("-")[-1].split(".")[0])
 
 
 def build_wheel(dev: Environment, portable: bool = False, log: Path | None = None) -> Path:
@@ -57,12 +73,35 @@ def build_zip(wheel: Path, blender: Environment, log: Path | None = None) -> Pat
     """
     target = DIST / f"authalic-{version()}-{platform()}.zip"
     stamp = DIST / "extension.stamp"
-    wanted = content_hash([*files_below("addon", "docs/blender.md", "scripts/lib/manual.py"), wheel])
+    wanted = content_hash([*files_below(*EXTENSION_SOURCES), wheel])
     if not target.exists() or not stamp.exists() or stamp.read_text() != wanted:
         stamp.unlink(missing_ok=True)
-        _zip(target, wheel, blender, log)
+        for old in DIST.glob("authalic-*.zip"):
+            old.unlink()
+        pack_extension(target, wheel, blender, log)
         stamp.write_text(wanted)
     return target
+
+
+def pack_extension(target: Path, wheel: Path, blender: Environment, log: Path | None = None) -> None:
+    """Writes the extension zip for the platform of a wheel, validated by Blender's own tool.
+
+    The same sources and the same wheel give the same bytes.
+    """
+    folder = OUT / "extension"
+    _lay_out_extension(folder, wheel)
+    target.unlink(missing_ok=True)
+    blender_ext(blender, "validate", folder, log=log)
+    blender_ext(blender, "build", "--source-dir", folder, "--output-filepath", target, log=log)
+    blender_ext(blender, "validate", target, log=log)
+
+
+def blender_ext(blender: Environment, *words: object, log: Path | None = None) -> str:
+    """Runs Blender's own tool for extensions, which needs no Blender."""
+    tools = sorted(blender.folder.rglob("bl_pkg/cli/blender_ext.py"))
+    if not tools:
+        raise Unavailable(f"the bpy package in {blender.folder} has no blender_ext.py")
+    return run([blender.python, tools[0], *words], _UTC, log)
 
 
 def install_wheel(wheel: Path, target: Environment, log: Path | None = None) -> None:
@@ -91,16 +130,6 @@ def announce(path: Path) -> None:
     say(f"{path.relative_to(ROOT)}  ({path.stat().st_size / 1e6:.1f} MB)")
 
 
-def _zip(target: Path, wheel: Path, blender: Environment, log: Path | None) -> None:
-    folder = OUT / "extension"
-    _lay_out_extension(folder, wheel)
-    target.unlink(missing_ok=True)
-    tool = [blender.python, _blender_ext(blender)]
-    run([*tool, "validate", folder], log=log)
-    run([*tool, "build", "--source-dir", folder, "--output-filepath", target], log=log)
-    run([*tool, "validate", target], log=log)
-
-
 def _maturin(dev: Environment, folder: Path, options: tuple[str, ...], log: Path | None) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     command = [dev.python, "-m", "maturin", "build", "--release", "--locked", "--out", folder]
@@ -123,16 +152,27 @@ def _lay_out_extension(folder: Path, wheel: Path) -> None:
     shutil.copytree(ROOT / "addon", folder, ignore=ignored)
     (folder / "wheels").mkdir()
     shutil.copy(wheel, folder / "wheels")
+    shutil.copy(ROOT / THIRD_PARTY, folder)
     template = (ROOT / "addon" / "blender_manifest.toml.in").read_text(encoding="utf-8")
-    manifest = template.replace("@VERSION@", version()).replace("@PLATFORMS@", json.dumps([platform()]))
+    platforms = json.dumps([platform_of(wheel) or platform()])
+    manifest = template.replace("@VERSION@", version()).replace("@PLATFORMS@", platforms)
     manifest = manifest.replace("@WHEELS@", json.dumps([f"./wheels/{wheel.name}"]))
     (folder / "blender_manifest.toml").write_text(manifest, encoding="utf-8")
     text = (ROOT / "docs" / "blender.md").read_text(encoding="utf-8")
     (folder / "manual.html").write_text(manual.to_html(text), encoding="utf-8")
+    _settle(folder)
 
 
-def _blender_ext(blender: Environment) -> Path:
-    tools = sorted(blender.folder.rglob("bl_pkg/cli/blender_ext.py"))
-    if not tools:
-        raise Unavailable(f"the bpy package in {blender.folder} has no blender_ext.py")
-    return tools[0]
+def _settle(folder: Path) -> None:
+    """Gives all files the time and the permissions that they shall have in an archive."""
+    seconds = int(changelog.source_date_epoch())
+    for path in folder.rglob("*"):
+        path.chmod(0o755 if path.is_dir() else 0o644)
+        os.utime(path, (seconds, seconds))
+
+
+def _platform_of_tag(tag: str) -> str | None:
+    for (system, machine), name in _PLATFORMS.items():
+        if re.fullmatch(rf"{system}(?:\d+)?(?:_.+)?_{machine}", tag):
+            return name
+    return None

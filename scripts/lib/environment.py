@@ -33,7 +33,7 @@ class Environment:
 
     def tool(self, name: str) -> Path:
         """A program of the environment."""
-        return self.folder / ("Scripts" if os.name == "nt" else "bin") / name
+        return self.folder / (f"Scripts/{name}.exe" if os.name == "nt" else f"bin/{name}")
 
     @property
     def label(self) -> str:
@@ -49,6 +49,11 @@ def dev() -> Environment:
 def docs() -> Environment:
     """The environment that builds the documentation."""
     return _ensure("docs", "docs", *pythons.find(*_newest_supported()))
+
+
+def release() -> Environment:
+    """The environment that inspects wheels and sdists."""
+    return _ensure("release", "release", *pythons.find(*_newest_supported()))
 
 
 def blender_oldest() -> Environment:

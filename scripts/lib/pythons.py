@@ -14,16 +14,23 @@ from shell import Unavailable
 NEWEST_FIRST = ("3.14", "3.13", "3.12", "3.11")
 _USUAL_FOLDERS = ("/usr/bin", "/usr/local/bin", "/opt/homebrew/bin")
 # ensurepip is a package of its own on Debian: without it an interpreter cannot make environments.
-_PROBE = "import sys, venv, ensurepip; print('%d.%d' % sys.version_info[:2])"
+_PROBE = (
+    "import sys, sysconfig, venv, ensurepip; "
+    "threads = 't' if sysconfig.get_config_var('Py_GIL_DISABLED') else ''; "
+    "print('%d.%d' % sys.version_info[:2] + threads)"
+)
 
 
 def candidates(version: str) -> Iterator[Path]:
-    """Files that may be the interpreter of a version such as "3.11", best guess first."""
-    name = f"python{version}" + (".exe" if os.name == "nt" else "")
-    if sys.version_info[:2] == tuple(map(int, version.split("."))):
+    """Files that may be the interpreter of a version such as "3.11" or "3.14t", best guess first.
+
+    The t means free threads: a Python without a global lock.
+    """
+    names = (f"python{version}.exe", "python.exe") if os.name == "nt" else (f"python{version}",)
+    if version.rstrip("t") == f"{sys.version_info[0]}.{sys.version_info[1]}":
         yield Path(sys.executable)
     for folder in (*os.environ.get("PATH", "").split(os.pathsep), *_USUAL_FOLDERS):
-        yield Path(folder) / name
+        yield from (Path(folder) / name for name in names)
     pyenv = Path(os.environ.get("PYENV_ROOT") or Path.home() / ".pyenv")
     yield from _newest(pyenv / "versions", f"{version}.*/bin/python")
     uv = os.environ.get("UV_PYTHON_INSTALL_DIR") or Path.home() / ".local/share/uv/python"

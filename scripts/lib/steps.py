@@ -15,11 +15,12 @@ import documentation
 import environment
 import windows
 from environment import Environment
-from shell import OUT, CommandFailed, run
+from shell import OUT, ROOT, CommandFailed, run
 
 LOGS = OUT / "test"
 CARGO_OPTIONS = ("--locked", "--release", "--workspace", "--features", "metis")
 """The wheel's profile and features everywhere: the tests run real solves, and no crate is built twice."""
+_WORKFLOWS = ROOT / ".github" / "workflows"
 _DOCSTRINGS = "tests/test_docstrings.py"
 _PYTHON_TESTS = ("tests", "--ignore=tests/blender", "--ignore=tests/gui", f"--ignore={_DOCSTRINGS}")
 _BLENDER_TESTS = ("tests/blender",)
@@ -122,6 +123,15 @@ def check_python_style(log: Path) -> Count:
     return Count()
 
 
+def check_workflows(log: Path) -> Count:
+    """The form of the workflows, the types in their expressions, and what strangers could misuse."""
+    dev = environment.dev()
+    environment.add(dev, "workflows")
+    run([dev.tool("actionlint"), *sorted(_WORKFLOWS.glob("*.yml"))], log=log)
+    run([dev.tool("zizmor"), "--offline", "--no-progress", "--quiet", _WORKFLOWS], log=log)
+    return Count()
+
+
 def install_wheel(log: Path) -> Count:
     dev = environment.dev()
     distribution.install_wheel(distribution.build_wheel(dev, log=log), dev, log)
@@ -188,6 +198,7 @@ STEPS = (
     Step("rust", "tests of the Rust crates", test_rust),
     Step("rustdoc", "documentation of the Rust crates", check_rust_docs, "documentation"),
     Step("ruff", "formatting and lints of the Python code", check_python_style, "documentation"),
+    Step("workflows", "lints of the workflows", check_workflows, "documentation"),
     Step("wheel", "build of the wheel, installed into .venv/dev", install_wheel),
     Step("types", "stub against the built module, types of the package and of the extension", check_types),
     Step("docstrings", "rules and examples of the docstrings of the package", check_docstrings),

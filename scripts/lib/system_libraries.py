@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The system libraries that Blender as a Python module needs on Linux."""
+"""The system libraries that Blender as a Python module needs on Linux. Run as root, it installs them."""
 
 from __future__ import annotations
 
@@ -20,20 +20,14 @@ def make_bpy_import(python: Path) -> None:
     """Makes `import bpy` work: installs Debian packages as root, else says what to type."""
     problem = _import_problem(python)
     if problem is not None and "cannot open shared object file" in problem:
-        _install(problem)
+        install(problem)
         problem = _import_problem(python)
     if problem is not None:
         raise Unavailable(f"`import bpy` fails: {tail(problem, 3)}")
 
 
-def _import_problem(python: Path) -> str | None:
-    # os._exit, because some versions hang when the interpreter ends
-    code = "import bpy, os; os._exit(0)"
-    answer = subprocess.run([str(python), "-c", code], capture_output=True, text=True, timeout=300)
-    return None if answer.returncode == 0 else answer.stderr or f"exit code {answer.returncode}"
-
-
-def _install(problem: str) -> None:
+def install(problem: str) -> None:
+    """Installs Debian packages as root. `problem` is the message to give where that is impossible."""
     packages = " ".join(DEBIAN_PACKAGES)
     if not shutil.which("apt-get") or not hasattr(os, "geteuid") or os.geteuid() != 0:
         raise Unavailable(
@@ -47,3 +41,14 @@ def _install(problem: str) -> None:
         run(["apt-get", "-o", "DPkg::Lock::Timeout=300", "install", "-y", *DEBIAN_PACKAGES], env)
     except CommandFailed as failure:
         raise Unavailable(f"apt-get could not install {packages}:\n{tail(failure.output, 5)}") from failure
+
+
+def _import_problem(python: Path) -> str | None:
+    # os._exit, because some versions hang when the interpreter ends
+    code = "import bpy, os; os._exit(0)"
+    answer = subprocess.run([str(python), "-c", code], capture_output=True, text=True, timeout=300)
+    return None if answer.returncode == 0 else answer.stderr or f"exit code {answer.returncode}"
+
+
+if __name__ == "__main__":
+    install("this installs all of them")

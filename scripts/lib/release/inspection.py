@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Inspects the sdist and the wheels: by the tools of packaging, and for what a release promises besides."""
+
+from __future__ import annotations
+
+import re
+import tarfile
+import zipfile
+from pathlib import Path
+
+import environment
+from release import notices, places
+from release.problems import Refused, refuse_any
+from shell import ROOT, run, version
+
+LIMIT = 4_000_000
+"""Bytes of a zip, and so of its wheel, at most."""
+_LICENSES = ("LICENSE-MIT", "LICENSE-APACHE", notices.NAME)
+# Messages of getopt.c and gkregex.c, the LGPL files among the C sources of METIS, which nothing here calls.
+_LGPL = (b"Premature end of regular expression", b"option `%s' is ambiguous")
+# A folder of somebody's machine in messages of panics: of a user, of a runner, of a temporary build.
+_FOREIGN_PATH = re.compile(rb"(?:/root|/home|/Users|/tmp|/work|[A-Z]:\\Users)[/\\][\w./\\-]+")
+
+
+def inspect(log: Path | None = None) -> None:
+    """Everything about the files in dist/release/ that can be seen without installing them."""
+    tools = environment.release()
+    files = [places.sdist(), *places.wheels()]
+    run([tools.python, "-m", "twine", "check", "--strict", *files], log=log)
+    problems = _problems_of_sdist(places.sdist())
+    for wheel in places.wheels():
+        _audit(wheel, tools, log)
+        problems += problems_of_wheel(wheel)
+        _validate_sbom(wheel, tools, log)
+    refuse_any(problems)
+
+
+def problems_of_wheel(wheel: Path) -> list[str]:
+    """What a wheel lacks or has too much of, a sentence each."""
+    with zipfile.ZipFile(str(wheel)) as archive:
+        names = archive.namelist()
+        [native] = [name for name in names if re.search(r"/_native\.[\w.-]*(so|pyd)$", name)]
+        code = archive.read(native)
+    paths = sorted(set(_FOREIGN_PATH.findall(code)))
+    info = f"authalic-{version()}.dist-info"
+    wanted = [*(f"{info}/licenses/{name}" for name in _LICENSES), "authalic/py.typed"]
+    problems = [f"{wheel.name} lacks {name}" for name in wanted if name not in names]
+    if not any(name.startswith(f"{info}/sboms/") for name in names):
+        problems.append(f"{wheel.name} has no list of its crates (SBOM)")
+    if paths:
+        problems.append(f"{wheel.name} names a folder of the machine that built it: {paths[0].decode()}")
+    problems += [f"{wheel.name} holds code under the LGPL: {text.decode()}" for text in _LGPL if text in code]
+    return problems + too_large(wheel)
+
+
+def too_large(path: Path) -> list[str]:
+    """A sentence about a file that is larger than a release allows."""
+    size = path.stat().st_size
+    return [f"{path.name} has {size:,} bytes, more than {LIMIT:,}"] if size > LIMIT else []
+
+
+def _audit(wheel: Path, tools: environment.Environment, log: Path | None) -> None:
+    """Python's stable interface is kept to, and a Linux wheel needs no newer system than its name says."""
+    if "-abi3-" in wheel.name:
+        run([tools.python, "-m", "abi3audit", "--strict", "--summary", wheel], log=log)
+    if "linux" in wheel.name:
+        shown = run([tools.python, "-m", "auditwheel", "show", wheel], log=log)
+        policy = re.search(r'consistent with\s+the\s+following\s+platform\s+tag:\s+"(\w+)"', shown)
+        if policy is None or policy[1] not in wheel.name:
+            found = policy[1] if policy else "no tag at all"
+            raise Refused([f"{wheel.name} is consistent with {found}, as auditwheel says"])
+
+
+def _validate_sbom(wheel: Path, tools: environment.Environment, log: Path | None) -> None:
+    """The list of crates is valid CycloneDX, and names the crates whose licenses are listed."""
+    program = ROOT / "scripts/lib/release/read_sbom.py"
+    listed = set(run([tools.python, program, wheel], log=log).split())
+    missing = {crate for crate, _ in notices.listed()} - listed
+    refuse_any([f"the SBOM of {wheel.name} does not list {crate}" for crate in sorted(missing)])
+
+
+def _problems_of_sdist(sdist: Path) -> list[str]:
+    with tarfile.open(str(sdist)) as archive:
+        names = {member.name.partition("/")[2] for member in archive if member.isfile()}
+    wanted = ("Cargo.lock", "Cargo.toml", "pyproject.toml", "README.md", "CHANGELOG.md", *_LICENSES)
+    strange = sorted(name for name in names if re.search(r"__pycache__|\.(so|pyd|pyc)$|(^|/)target/", name))
+    return [
+        *(f"{sdist.name} lacks {name}" for name in wanted if name not in names),
+        *(f"{sdist.name} has {name}, which a build made" for name in strange),
+    ]

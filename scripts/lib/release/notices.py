@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""The licenses of the crates in the wheel: gathered by cargo-about, kept in THIRD-PARTY-LICENSES.md."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import distribution
+from release import cargo_tools, places
+from release.problems import refuse_any
+from shell import ROOT, run
+
+NAME = distribution.THIRD_PARTY
+CONFIGURATION = ROOT / "scripts" / "licenses.toml"
+_TEMPLATE = ROOT / "scripts" / "licenses.hbs"
+_FEATURES = ("--features", "metis")
+
+
+def gather(log: Path | None = None) -> str:
+    """The text of the file: each license with the crates that are under it.
+
+    The crates are those of all platforms; scripts/licenses.toml names these, and the licenses that are
+    accepted. Another license is refused.
+    """
+    about = cargo_tools.installed("cargo-about", log)
+    target = places.WORK / NAME
+    target.parent.mkdir(parents=True, exist_ok=True)
+    options = ["--config", CONFIGURATION, "--manifest-path", ROOT / "rust/python/Cargo.toml", *_FEATURES]
+    command = [about, "generate", "--locked", "--offline", "--fail", *options]
+    run(["cargo", "fetch", "--locked"], log=log)
+    run([*command, "--output-file", target, _TEMPLATE], log=log)
+    return _tidy(target.read_text(encoding="utf-8"))
+
+
+def write(log: Path | None = None) -> Path:
+    """Writes the file anew."""
+    (ROOT / NAME).write_text(gather(log), encoding="utf-8")
+    return ROOT / NAME
+
+
+def check(log: Path | None = None) -> None:
+    """Refuses a file that is not what the crates give."""
+    is_new = gather(log) == (ROOT / NAME).read_text(encoding="utf-8")
+    refuse_any([] if is_new else [f"{NAME} is not up to date: run `scripts/release licenses --write`"])
+
+
+def listed() -> set[tuple[str, str]]:
+    """The names and versions of the crates in the file."""
+    return set(re.findall(r"(?m)^- (\S+) (\d\S*)$", (ROOT / NAME).read_text(encoding="utf-8")))
+
+
+def compiled() -> set[tuple[str, str]]:
+    """The names and versions of the crates that are compiled into a wheel of any platform, as cargo says."""
+    text = CONFIGURATION.read_text(encoding="utf-8")
+    targets = re.findall(r'"(.+)"', text.partition("targets = [")[2].partition("]")[0])
+    command = ["cargo", "tree", "--locked", "--package", "authalic-python", *_FEATURES]
+    command += ["--edges", "normal", "--prefix", "none", "--format", "{p}"]
+    tree = run([*command, *(word for target in targets for word in ("--target", target))])
+    crates = set(re.findall(r"(?m)^(\S+) v(\d\S*)", tree))
+    return {(name, number) for name, number in crates if name not in ("authalic", "authalic-python")}
+
+
+def _tidy(text: str) -> str:
+    """The text without our own crate, space at the ends of lines, and empty lines at the ends of blocks."""
+    text = "\n".join(line.rstrip() for line in text.splitlines() if not line.startswith("- authalic "))
+    return re.sub(r"\n+```\n", "\n```\n", re.sub(r"```text\n+", "```text\n", text)).strip() + "\n"

@@ -1,0 +1,314 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""What decides whether a release is made, and the workflows that make it."""
+
+import hashlib
+import json
+import re
+import zipfile
+from pathlib import Path
+
+import pytest
+import yaml
+
+import changelog
+import distribution
+import pythons
+import shell
+from release import agreement, extensions, inspection, notices, places, platforms
+from release.main import STEPS
+from shell import ROOT, Unavailable
+
+WORKFLOWS = {
+    path.stem: yaml.safe_load(path.read_text("utf-8")) for path in ROOT.glob(".github/workflows/*.yml")
+}
+JOBS = {f"{flow}/{name}": job for flow, text in WORKFLOWS.items() for name, job in text["jobs"].items()}
+SHA = r"[0-9a-f]{40}"
+
+
+@pytest.fixture
+def project(monkeypatch, tmp_path):
+    """A project of version 1.2.3 whose files agree."""
+    for module in (shell, agreement, changelog):
+        monkeypatch.setattr(module, "ROOT", tmp_path)
+    lock = "".join(f'name = "{name}"\nversion = "1.2.3"\n' for name in ("authalic", "authalic-python"))
+    (tmp_path / "Cargo.toml").write_text('[workspace.package]\nversion = "1.2.3"\n')
+    (tmp_path / "Cargo.lock").write_text(f'{lock}name = "other"\nversion = "9.9.9"\n')
+    (tmp_path / "CITATION.cff").write_text("cff-version: 1.2.0\nversion: 1.2.3\n")
+    (tmp_path / "CHANGELOG.md").write_text(
+        "# Changelog\n\n## 1.2.3 (2001-09-09)\n\n- New.\n\n## 1.2.2 (2000-01-01)\n\n- Old.\n"
+    )
+    return tmp_path
+
+
+def replace(path: Path, old: str, new: str) -> None:
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+
+
+def test_this_project_agrees_with_itself():
+    assert agreement.disagreements() == []
+
+
+def test_a_tag_of_the_version_with_a_dated_entry_is_released(project):
+    assert agreement.disagreements("v1.2.3") == []
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "sentence"),
+    [
+        ("Cargo.toml", "1.2.3", "1.2.4", "the tag must be v1.2.4"),
+        ("Cargo.toml", "1.2.3", "1.2.3-rc1", "not of the form"),
+        ("Cargo.lock", '-python"\nversion = "1.2.3', '-python"\nversion = "1.2.2', "Cargo.lock has"),
+        ("CITATION.cff", "version: 1.2.3", "version: 1.2.2", "CITATION.cff has the version 1.2.2"),
+        ("CHANGELOG.md", "## 1.2.3", "## 1.2.4", "the first section of CHANGELOG.md is 1.2.4"),
+        ("CHANGELOG.md", "2001-09-09", "unreleased", "says `unreleased`"),
+        ("CHANGELOG.md", "2001-09-09", "2001-09-31", "says `2001-09-31`"),
+        ("CHANGELOG.md", "- New.", "", "is empty"),
+    ],
+)  # fmt: skip
+def test_a_place_that_disagrees_is_named(project, file, old, new, sentence):
+    replace(project / file, old, new)
+    assert sentence in "; ".join(agreement.disagreements("v1.2.3"))
+
+
+def test_another_tag_is_refused(project):
+    assert "the tag must be v1.2.3" in agreement.disagreements("1.2.3")[0]
+    assert len(agreement.disagreements("v1.2.2")) == 1
+
+
+def test_a_rehearsal_may_be_unreleased_but_not_undated(project):
+    replace(project / "CHANGELOG.md", "2001-09-09", "unreleased")
+    assert agreement.disagreements() == []
+    replace(project / "CHANGELOG.md", "unreleased", "soon")
+    assert len(agreement.disagreements()) == 1
+
+
+def test_the_notes_are_the_section_of_the_version(project):
+    assert [(entry.version, entry.text) for entry in changelog.entries()] == [
+        ("1.2.3", "- New."),
+        ("1.2.2", "- Old."),
+    ]
+    assert changelog.entry().text == "- New."
+    replace(project / "Cargo.toml", "1.2.3", "1.2.4")
+    with pytest.raises(Unavailable, match=r"no section `## 1\.2\.4"):
+        changelog.entry()
+
+
+def test_all_that_is_built_bears_the_day_of_the_release(project):
+    assert changelog.source_date_epoch() == str(1_000_000_000 - 1_000_000_000 % 86400)
+    replace(project / "CHANGELOG.md", "2001-09-09", "unreleased")
+    assert int(changelog.source_date_epoch()) > 315_532_800  # zip files begin in 1980
+
+
+@pytest.mark.parametrize(
+    ("tag", "name"),
+    [
+        ("cp311-abi3-manylinux_2_28_x86_64", "linux-x64"),
+        ("cp311-abi3-manylinux_2_17_aarch64.manylinux2014_aarch64", "linux-arm64"),
+        ("cp311-abi3-manylinux2014_x86_64", "linux-x64"),
+        ("cp311-abi3-linux_x86_64", "linux-x64"),
+        ("cp311-abi3-macosx_11_0_arm64", "macos-arm64"),
+        ("cp311-abi3-macosx_11_0_x86_64", "macos-x64"),
+        ("cp311-abi3-win_amd64", "windows-x64"),
+        ("cp311-abi3-win_arm64", "windows-arm64"),
+        ("cp311-abi3-musllinux_1_2_x86_64", None),
+        ("cp311-abi3-win32", None),
+    ],
+)
+def test_wheels_are_for_platforms_of_blender(tag, name):
+    assert distribution.platform_of(Path(f"authalic-1.2.3-{tag}.whl")) == name
+
+
+def test_this_machine_has_a_platform():
+    assert distribution.platform() in platforms.PLATFORMS
+    with pytest.raises(Unavailable, match="no wheels for solaris"):
+        platforms.named("solaris")
+
+
+def test_a_python_without_a_global_lock_is_another_version(monkeypatch, tmp_path):
+    python = tmp_path / "python3.99t"
+    python.write_text("#!/bin/sh\necho 3.99t\n")
+    python.chmod(0o755)
+    monkeypatch.setattr(pythons, "_USUAL_FOLDERS", (str(tmp_path),))
+    assert pythons.find("3.99t") == (python, "3.99t")
+    assert not pythons.works(python, "3.99")
+
+
+@pytest.fixture
+def built(monkeypatch, tmp_path):
+    """A folder of a release with a wheel and its zip, both complete."""
+    monkeypatch.setattr(places, "FILES", tmp_path)
+    monkeypatch.setattr(places, "REPOSITORY", tmp_path / "extensions")
+    wheel = tmp_path / f"authalic-{shell.version()}-cp311-abi3-manylinux_2_28_x86_64.whl"
+    info = f"authalic-{shell.version()}.dist-info"
+    with zipfile.ZipFile(wheel, "w") as archive:
+        archive.writestr("authalic/_native.abi3.so", b"\x7fELF panicked at /authalic/rust/core/src/lib.rs:1")
+        archive.writestr("authalic/py.typed", "")
+        archive.writestr(f"{info}/sboms/authalic-python.cyclonedx.json", "{}")
+        for name in ("LICENSE-MIT", "LICENSE-APACHE", notices.NAME):
+            archive.writestr(f"{info}/licenses/{name}", name)
+    places.REPOSITORY.mkdir()
+    zipped = places.REPOSITORY / f"authalic-{shell.version()}-linux-x64.zip"
+    with zipfile.ZipFile(zipped, "w") as archive:
+        archive.write(wheel, f"wheels/{wheel.name}")
+        for name in ("__init__.py", "LICENSE", "blender_manifest.toml", "manual.html", notices.NAME):
+            archive.writestr(name, name)
+    return wheel, zipped
+
+
+def rewritten(path: Path, without: str = "", **added: bytes) -> Path:
+    """The archive without the files of some name, and with further ones (`__` stands for a slash)."""
+    with zipfile.ZipFile(path) as archive:
+        files = {
+            name: archive.read(name) for name in archive.namelist() if not without or without not in name
+        }
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, data in {**files, **{key.replace("__", "/"): data for key, data in added.items()}}.items():
+            archive.writestr(name, data)
+    return path
+
+
+def test_complete_wheels_and_zips_have_no_problems(built):
+    wheel, zipped = built
+    assert inspection.problems_of_wheel(wheel) == [] and extensions.problems_of_zip(zipped) == []
+
+
+@pytest.mark.parametrize("name", ["LICENSE-MIT", notices.NAME, "py.typed", "sboms"])
+def test_a_wheel_must_have_its_licenses_its_types_and_its_crates(built, name):
+    [problem] = inspection.problems_of_wheel(rewritten(built[0], without=name))
+    assert name in problem or "SBOM" in problem
+
+
+@pytest.mark.parametrize(
+    "path", [b"/home/runner/work/a.rs", b"/root/.cargo/registry/x", b"C:\\Users\\runner\\a.rs"]
+)
+def test_a_wheel_must_name_no_folder_of_the_machine_that_built_it(built, path):
+    wheel = rewritten(built[0], without="_native", **{"authalic___native.abi3.so": b"panicked at " + path})
+    [problem] = inspection.problems_of_wheel(wheel)
+    assert path.decode() in problem
+
+
+def test_a_wheel_must_hold_nothing_under_another_license(built):
+    code = b"\0Premature end of regular expression\0"
+    wheel = rewritten(built[0], without="_native", **{"authalic___native.abi3.so": code})
+    [problem] = inspection.problems_of_wheel(wheel)
+    assert "LGPL" in problem
+
+
+def test_what_is_too_large_is_refused(built, monkeypatch):
+    monkeypatch.setattr(inspection, "LIMIT", 10)
+    assert "more than 10" in inspection.problems_of_wheel(built[0])[0]
+    assert "more than 10" in extensions.problems_of_zip(built[1])[0]
+
+
+def test_a_zip_must_hold_the_wheel_of_the_release(built):
+    wheel, zipped = built
+    [problem] = extensions.problems_of_zip(rewritten(zipped, without="LICENSE", LICENSE=b""))
+    assert notices.NAME in problem
+    wheel.write_bytes(b"another")
+    assert "is not the one in" in "; ".join(extensions.problems_of_zip(zipped))
+    [problem] = [
+        p for p in extensions.problems_of_zip(rewritten(zipped, without="wheels")) if "one wheel" in p
+    ]
+    assert "must have one wheel" in problem
+
+
+def index_of(zipped: Path) -> dict:
+    data = zipped.read_bytes()
+    row = {
+        "id": "authalic",
+        "version": shell.version(),
+        "archive_url": f"./{zipped.name}",
+        "archive_size": len(data),
+        "archive_hash": f"sha256:{hashlib.sha256(data).hexdigest()}",
+        "platforms": ["linux-x64"],
+    }
+    return {"version": "v1", "blocklist": [], "data": [row]}
+
+
+def test_the_index_agrees_with_the_zips_beside_it(built):
+    path = built[1].parent / "index.json"
+    index = index_of(built[1])
+    path.write_text(json.dumps(index))
+    assert extensions.problems_of_index(path) == []
+    for key, value in {"archive_size": 7, "archive_hash": "sha256:0", "platforms": ["windows-x64"]}.items():
+        path.write_text(json.dumps({**index, "data": [{**index["data"][0], key: value}]}))
+        [problem] = extensions.problems_of_index(path)
+        assert key in problem
+    path.write_text(json.dumps({**index, "data": []}))
+    assert extensions.problems_of_index(path) == [f"the index lacks {built[1].name}"]
+
+
+def test_the_licenses_are_those_of_the_crates_that_are_compiled():
+    compiled, listed = notices.compiled(), notices.listed()
+    assert ("faer", "0.24.4") in compiled and len(compiled) > 60
+    assert not compiled - listed, f"run `scripts/release licenses --write`: {compiled - listed}"
+    # cargo-about unites the features of all platforms, and so may list more.
+    lock = re.findall(
+        r'(?m)^name = "(.+)"\nversion = "(.+)"$', (ROOT / "Cargo.lock").read_text(encoding="utf-8")
+    )
+    assert listed <= set(lock), f"run `scripts/release licenses --write`: {listed - set(lock)}"
+    assert "Regents of the University of Minnesota" in (ROOT / notices.NAME).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("job", JOBS)
+def test_actions_are_pinned_by_commit(job):
+    for step in JOBS[job]["steps"]:
+        if "uses" in step:
+            assert re.fullmatch(rf"[\w-]+/[\w-]+@{SHA}", step["uses"])
+
+
+def test_an_action_has_one_commit_and_one_version_everywhere():
+    lines = {
+        line
+        for path in ROOT.glob(".github/workflows/*.yml")
+        for line in re.findall(r"uses: (.+)", path.read_text("utf-8"))
+    }
+    names = [line.split("@")[0] for line in lines]
+    assert len(names) == len(set(names)) and all(re.search(r"# v\d+\.\d+\.\d+$", line) for line in lines)
+
+
+@pytest.mark.parametrize("job", JOBS)
+def test_jobs_run_commands_of_the_project(job):
+    steps = {step.name for step in STEPS} | {"notes"}
+    for command in [step["run"] for step in JOBS[job]["steps"] if "run" in step]:
+        for script, word in re.findall(r"(scripts/[\w/.]+)(?: ([\w-]+))?", command):
+            assert (ROOT / script).is_file()
+            assert script != "scripts/release" or word in steps or word == "--dry-run", command
+
+
+def test_every_platform_has_its_wheel():
+    rows = WORKFLOWS["release"]["jobs"]["wheels"]["strategy"]["matrix"]["include"]
+    assert [row["platform"] for row in rows] == list(platforms.PLATFORMS)
+    rows = WORKFLOWS["release"]["jobs"]["free-threaded"]["strategy"]["matrix"]["include"]
+    assert {row["platform"] for row in rows} <= platforms.PLATFORMS.keys()
+
+
+def needed(jobs: dict, name: str) -> set[str]:
+    """The jobs that must have succeeded before a job begins."""
+    needs = jobs[name].get("needs", [])
+    direct = {needs} if isinstance(needs, str) else set(needs)
+    return direct.union(*(needed(jobs, other) for other in direct))
+
+
+def test_only_a_tag_that_agrees_is_published():
+    jobs = WORKFLOWS["release"]["jobs"]
+    writing = {name for name, job in jobs.items() if "write" in job["permissions"].values()}
+    assert {name for name in jobs if name.startswith("publish")} | {"attest"} == writing
+    for name in writing:
+        assert jobs[name]["if"] == "github.ref_type == 'tag'"
+        assert {"agree", "extensions"} <= needed(jobs, name)
+    assert {"agree", "crates", "wheels", "free-threaded"} <= needed(jobs, "publish-package")
+    commands = [
+        step.get("run") for step in jobs["agree"]["steps"] if step.get("if") == "github.ref_type == 'tag'"
+    ]
+    assert commands == ['python scripts/release agree --tag "$GITHUB_REF_NAME"']
+
+
+def test_other_workflows_write_nothing():
+    for name, workflow in WORKFLOWS.items():
+        assert workflow["permissions"] == {}
+        if name != "release":
+            for job in workflow["jobs"].values():
+                assert job["permissions"] == {"contents": "read"}

@@ -240,6 +240,26 @@ def test_the_index_agrees_with_the_zips_beside_it(built):
     assert extensions.problems_of_index(path) == [f"the index lacks {built[1].name}"]
 
 
+@pytest.mark.skipif(
+    not any(shell.VENVS.glob("bpy-5/lib")), reason="Blender's tool for extensions is in .venv/bpy-5"
+)
+def test_each_platform_has_a_zip_that_blender_finds_in_the_index(built, monkeypatch, tmp_path):
+    """Wheels of three platforms and one without Blender; the tool of Blender validates and installs."""
+    monkeypatch.setattr(places, "WORK", tmp_path / "work")
+    monkeypatch.setattr(distribution, "OUT", tmp_path / "out")
+    wheel, _ = built
+    for tag in ("macosx_11_0_arm64", "win_arm64", "musllinux_1_2_x86_64"):
+        wheel.with_name(wheel.name.replace("manylinux_2_28_x86_64", tag)).write_bytes(wheel.read_bytes())
+    wheel.with_name(wheel.name.replace("cp311-abi3", "cp314-cp314t")).write_bytes(b"")
+    names = [
+        f"authalic-{shell.version()}-{name}.zip" for name in ("linux-x64", "macos-arm64", "windows-arm64")
+    ]
+    assert [path.name for path in extensions.pack()] == names
+    extensions.pack_again()
+    rows = json.loads(extensions.index().read_text(encoding="utf-8"))["data"]
+    assert sorted(row["platforms"] for row in rows) == [["linux-x64"], ["macos-arm64"], ["windows-arm64"]]
+
+
 def test_the_licenses_are_those_of_the_crates_that_are_compiled():
     compiled, listed = notices.compiled(), notices.listed()
     assert ("faer", "0.24.4") in compiled and len(compiled) > 60

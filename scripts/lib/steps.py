@@ -128,7 +128,7 @@ def check_workflows(log: Path) -> Count:
     dev = environment.dev()
     environment.add(dev, "workflows")
     run([dev.tool("actionlint"), *sorted(_WORKFLOWS.glob("*.yml"))], log=log)
-    run([dev.tool("zizmor"), "--offline", "--no-progress", "--quiet", _WORKFLOWS], log=log)
+    run([dev.tool("zizmor"), "--offline", "--persona=pedantic", "--quiet", _WORKFLOWS], log=log)
     return Count()
 
 

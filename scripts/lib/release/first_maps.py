@@ -45,7 +45,7 @@ def main() -> None:
     flat = np.column_stack([disk.uv, np.zeros(len(disk.uv))])
     assert np.abs(areas(flat, dome.faces) / areas(dome.vertices, dome.faces) - 1).max() < 0.02
 
-    unwrapped = authalic.unwrap(egg, faces)
+    unwrapped = authalic.unwrap(authalic.Surface(egg, faces))
     assert unwrapped.uv.min() >= 0 and unwrapped.uv.max() <= 1
 
     registration = authalic.register_spheres(

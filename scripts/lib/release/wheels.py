@@ -45,7 +45,8 @@ def _build(platform: Platform, free_threaded: bool, folder: Path, log: Path | No
         environment.add(dev, "portable")
     source = sources.unpack(places.WORK / "build")
     python = pythons.find(FREE_THREADED)[0] if free_threaded else dev.python
-    command = [dev.python, "-m", "maturin", "build", "--release", "--locked", "--interpreter", python]
+    command = [dev.python, "-m", "maturin", "build", "--profile", "dist", "--locked", "--interpreter", python]
+    command += ["--compression-level", "9"]
     command += ["--manifest-path", source / "rust/python/Cargo.toml", "--out", places.WORK / "new"]
     shutil.rmtree(places.WORK / "new", ignore_errors=True)
     run([*command, *platform.options], {**_variables(dev, source), **platform.variables}, log)

@@ -68,6 +68,31 @@ def test_gifti_goes_in_and_out_with_values(run, folder):
     assert nibabel.load("lh.shape.gii").agg_data().shape == (258,)
 
 
+def test_gifti_says_what_a_map_is(run, folder):
+    """The kind of geometry is that of the map; the transform of the surface's place is not for it."""
+    nibabel = pytest.importorskip("nibabel")
+    gifti = nibabel.gifti
+    left = {"AnatomicalStructurePrimary": "CortexLeft"}
+    meta = gifti.GiftiMetaData(
+        left | {"AnatomicalStructureSecondary": "GrayWhite", "GeometricType": "Anatomical"}
+    )
+    for name, mesh in (("ball", meshes.bumpy_ball()), ("cap", meshes.bumpy_cap())):
+        space = gifti.GiftiCoordSystem(xform=np.diag([2.0, 3, 4, 1]))
+        points = gifti.GiftiDataArray(
+            mesh.vertices.astype("f4"),
+            "NIFTI_INTENT_POINTSET",
+            coordsys=space,
+            meta=gifti.GiftiMetaData(meta),
+        )
+        faces = gifti.GiftiDataArray(mesh.faces.astype("i4"), "NIFTI_INTENT_TRIANGLE")
+        nibabel.save(gifti.GiftiImage(darrays=[points, faces]), f"{name}.surf.gii")
+    assert run("sphere", "ball.surf.gii").code == run("disk", "cap.surf.gii", "flat.surf.gii").code == 0
+    for name, kind in (("ball.sphere", "Spherical"), ("flat", "Flat")):
+        points = nibabel.load(f"{name}.surf.gii").darrays[0]
+        assert dict(points.meta) == left | {"GeometricType": kind}
+        assert np.array_equal(points.coordsys.xform, np.eye(4))
+
+
 def test_radius_and_options_reach_the_library(run, folder):
     words = ("--radius", 2.5, "--angle-weight", 0.1, "--max-iterations", 3, "--threads", 1)
     result = run("sphere", "ball.obj", "out.npz", *words, "--json")
@@ -172,6 +197,24 @@ def test_register_takes_the_librarys_options(run, folder):
     assert exact.code == 0 and np.array_equal(read_mesh(folder / "area.npz").vertices, expected.positions)
 
 
+def test_what_is_registered_lies_in_the_volume_of_the_target(run, folder):
+    nibabel_io = pytest.importorskip("nibabel.freesurfer.io")
+    volume = {
+        **{"head": np.array([2, 0, 20]), "valid": "1  # volume info valid", "filename": "orig.mgz"},
+        **{"volume": np.array([256, 256, 256]), "voxelsize": np.ones(3), "xras": np.array([-1.0, 0, 0])},
+        **{"yras": np.array([0.0, 0, -1]), "zras": np.array([0.0, 1, 0])},
+    }
+    mesh = meshes.bumpy_ball()
+    for name, center in (("source", [1.0, 2, 3]), ("target", [5.0, 6, 7])):
+        nibabel_io.write_geometry(
+            f"lh.{name}", mesh.vertices, mesh.faces, volume_info=volume | {"cras": np.array(center)}
+        )
+    (folder / "pairs.txt").write_text("0 0\n1 1\n2 2\n5 5\n")
+    assert run("register", "lh.source", "lh.target", "lh.there", "--landmarks", "pairs.txt").code == 0
+    kept = nibabel_io.read_geometry("lh.there", read_metadata=True)[2]
+    assert np.array_equal(kept["cras"], [5, 6, 7])
+
+
 def test_register_refuses_pairs_that_are_none(run, folder):
     (folder / "landmarks.csv").write_text("1,2,3,4\n")
     result = run("register", "ball.obj", "ball.obj", "out.obj", "--landmarks", "landmarks.csv")
@@ -254,6 +297,15 @@ def test_meshes_go_through_pipes(folder):
     record = json.loads(second.stdout)
     assert record["input"] == "-" and np.allclose(record["highest"], 1, atol=0.02)
     assert names(folder) == ["ball.obj", "cap.obj", "torus.obj"]
+
+
+def test_seams_and_registrations_go_through_pipes(folder):
+    content = (folder / "ball.obj").read_bytes()
+    seams = piped(folder, ["seams", "-", "-", "--input-format", "obj", "--output-format", "obj"], content)
+    assert b"\nl " in seams.stdout and b"islands" in seams.stderr
+    (folder / "pairs.txt").write_text("0 0\n1 1\n2 2\n5 5\n")
+    words = ["register", "ball.obj", "ball.obj", "-", "--landmarks", "pairs.txt", "--output-format", "off"]
+    assert piped(folder, words, b"").stdout.startswith(b"OFF\n258 512")
 
 
 def test_a_stream_needs_the_name_of_its_format(run):

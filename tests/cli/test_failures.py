@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from api import meshes
 
-from authalic.io import MeshData, write_mesh
+from authalic.io import MeshData, write_mesh, write_values
 
 from .conftest import names, start
 
@@ -63,6 +63,67 @@ def test_each_kind_of_failure_has_its_code_and_leaves_no_file(words, code, said,
     result = run(*words)
     assert (result.code, result.out) == (code, "") and said in result.err
     assert names(folder) == before
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("sphere", "ball.obj", "out.npz", "--areal", "out.npz"),
+        ("sphere", "ball.obj", "out.npz", "--areal", "nowhere/out.npy"),
+        ("disk", "cap.obj", "out.npz", "--areal", "./out.npz"),
+        ("disk", "cap.obj", "nowhere/out.obj"),
+        ("layout", "ball.obj", "nowhere/out.obj"),
+        ("unwrap", "ball.obj", "nowhere/out.obj"),
+        ("seams", "ball.obj", "nowhere/out.obj"),
+        ("repair", "ball.obj", "nowhere/out.obj"),
+        ("register", "ball.obj", "ball.obj", "out.npz", "--pull", "ball.npy", "out.npz"),
+    ],
+)
+def test_files_that_cannot_be_written_are_errors_before_the_work_starts(words, run, folder, monkeypatch):
+    from authalic.runs import disk, layout, register, repair, sphere, unwrap
+
+    write_values(folder / "ball.npy", np.zeros(258))
+    for module, name in (
+        *((sphere, "sphere_map"), (disk, "disk_map"), (layout, "sphere_map"), (unwrap, "unwrap")),
+        *((unwrap, "seams"), (repair, "repair"), (register, "_register")),
+    ):
+        monkeypatch.setattr(module, name, None)  # not to be called
+    before = names(folder)
+    result = run(*words)
+    assert result.code == 3 and ("there is no folder" in result.err or "two results" in result.err)
+    assert names(folder) == before
+
+
+def test_a_folder_that_cannot_be_written_to_is_an_error(run, folder, monkeypatch):
+    """As root, who may write anywhere, one cannot make such a folder."""
+    monkeypatch.setattr("os.access", lambda place, mode: mode != os.W_OK)
+    result = run("sphere", "ball.obj", "out.obj")
+    assert result.code == 3 and "cannot be written to" in result.err
+
+
+def test_errors_name_what_the_command_calls_things(run, folder):
+    write_mesh(folder / "apart.stl", MeshData(*meshes.bumpy_ball()))
+    vertices, faces = meshes.octahedron()
+    write_mesh(folder / "twice.obj", MeshData(vertices, np.vstack([faces, faces[:1]])))
+    write_mesh(folder / "hole.obj", MeshData(vertices, faces[1:]))
+    failures = {
+        ("sphere", "apart.stl"): "(--repair merges them)",
+        ("disk", "ball.obj", "out.obj"): "by authalic sphere (authalic unwrap cuts any surface open",
+        ("sphere", "torus.obj"): "authalic repair --close-handles all closes handles",
+        ("sphere", "hole.obj"): "(--fill-holes fills them)",
+        ("sphere", "twice.obj"): "(authalic repair mends this",
+    }
+    for words, said in failures.items():
+        result = run(*words)
+        assert result.code == 4 and said in result.err
+        for python in ("=True", '="', "_map", "=("):
+            assert python not in result.err
+    assert "--repair" in run("sphere", "apart.stl", "--json").error["message"]
+
+
+def test_wrong_words_are_data_too_with_json(run):
+    error = run("sphere", "nothing.obj", "--json").error
+    assert (error["kind"], error["exit_code"]) == ("usage", 2) and "nothing.obj" in error["message"]
 
 
 def test_a_file_that_cannot_be_written_leaves_the_other_one_out_too(run, folder):

@@ -99,6 +99,24 @@ def test_polygons_of_obj_become_fans_in_their_order(tmp_path):
     assert mesh.uv_faces.tolist() == [[0, 1, 2], [0, 1, 2], [0, 2, 3], [1, 2, 3]]
 
 
+def test_lines_of_obj_may_be_set_in_and_have_tabs(tmp_path):
+    path = tmp_path / "tabs.obj"
+    path.write_bytes(
+        b"o one\r\n  v 0 0 0\r\nv\t1 0 0\r\nv 0 1 0\r\nvt 1\r\no two\r\n\tf\t1/1 2/1 3/1\r\nf -3 -1 -2 \r\n"
+    )
+    mesh = read_mesh(path)
+    assert mesh.vertices.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 1]] and mesh.uv is None
+
+
+@pytest.mark.parametrize("line", ["v 0 0", "v 0 0 x", "f 0 1 2", "f -4 1 2", "f 1 2 c", "f 1/9x 2/1 3/1"])
+def test_a_bad_line_of_obj_is_named(line, tmp_path):
+    path = tmp_path / "bad.obj"
+    path.write_text(f"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n{line}\nf 1 2 3\n")
+    with pytest.raises(FileError, match=f"line 5 cannot be read: '{line}'"):
+        read_mesh(path)
+
+
 def test_polygons_of_ply_become_fans_in_their_order(tmp_path):
     path = tmp_path / "polygons.ply"
     points = "0 0 0 255\n1 0 0 255\n1 1 0 255\n0 1 0 255\n2 2 2 255\n"
@@ -201,6 +219,26 @@ def test_gifti_keeps_what_the_points_are(tmp_path):
     assert np.array_equal(image.agg_data("triangle"), mesh.faces)
 
 
+@pytest.mark.parametrize("encoding", ["ASCII", "B64BIN", "B64GZ"])
+def test_gifti_in_every_encoding_and_order(encoding, tmp_path):
+    """Arrays in columns, triangles before points, and a transform, which is kept and not applied."""
+    nibabel = pytest.importorskip("nibabel")
+    gifti = nibabel.gifti
+    mesh = meshes.octahedron()
+    space = gifti.GiftiCoordSystem(xform=np.diag([2.0, 3, 4, 1]))
+    options = {"encoding": f"GIFTI_ENCODING_{encoding}", "ordering": "ColumnMajorOrder"}
+    points = gifti.GiftiDataArray(
+        mesh.vertices.astype("f4"), "NIFTI_INTENT_POINTSET", coordsys=space, **options
+    )
+    faces = gifti.GiftiDataArray(mesh.faces.astype("i4"), "NIFTI_INTENT_TRIANGLE", **options)
+    nibabel.save(gifti.GiftiImage(darrays=[faces, points]), tmp_path / "a.surf.gii")
+    found = read_mesh(tmp_path / "a.surf.gii")
+    assert np.array_equal(found.vertices, mesh.vertices) and np.array_equal(found.faces, mesh.faces)
+    write_mesh(tmp_path / "b.surf.gii", found)
+    [kept] = nibabel.load(tmp_path / "b.surf.gii").get_arrays_from_intent("NIFTI_INTENT_POINTSET")
+    assert np.array_equal(kept.coordsys.xform, np.diag([2.0, 3, 4, 1]))
+
+
 @pytest.mark.parametrize("name", MESH_NAMES)
 def test_a_damaged_file_is_named_as_such(name, tmp_path):
     path = tmp_path / MESH_NAMES[name]
@@ -215,6 +253,14 @@ def test_a_damaged_file_is_named_as_such(name, tmp_path):
             assert mesh.faces.max(initial=0) < len(mesh.vertices)
             raise FileError(path, f"{path}: it ends early")
         assert str(path) in str(caught.value)
+
+
+@pytest.mark.parametrize("name", [*MESH_NAMES.values(), *VALUE_NAMES])
+def test_an_empty_file_is_called_empty(name, tmp_path):
+    (tmp_path / name).touch()
+    for read in (read_mesh, read_values):
+        with pytest.raises(FileError, match=r"the file is empty|which format of"):
+            read(tmp_path / name)
 
 
 def test_names_say_formats(tmp_path):
@@ -254,6 +300,19 @@ def test_files_appear_together_or_not_at_all(tmp_path):
         outputs.add(tmp_path / "old.txt").write_text("new")
         assert (tmp_path / "old.txt").read_text() == "old"
     assert (tmp_path / "old.txt").read_text() == "new" and len(list(tmp_path.iterdir())) == 1
+
+
+def test_files_that_cannot_be_written_are_refused_before_there_is_anything_to_write(tmp_path):
+    from authalic.io import Outputs
+
+    outputs = Outputs()
+    outputs.add(tmp_path / "a.npz")
+    with pytest.raises(FileError, match="two results"):
+        outputs.add(tmp_path / "nowhere" / ".." / "a.npz")
+    with pytest.raises(FileNotFoundError, match="there is no folder"):
+        outputs.add(tmp_path / "nowhere" / "a.npz")
+    with pytest.raises(IsADirectoryError, match="is a folder"):
+        outputs.add(tmp_path)
 
 
 def test_freesurfers_old_formats_are_read_by_nibabel(tmp_path):

@@ -12,7 +12,7 @@ import click
 
 from .._native import __version__
 from . import batch, cutting, maps, meshes, registering
-from .report import Exit, show_error
+from .report import Exit, show_error, show_usage_error
 
 
 class _Terminated(BaseException):
@@ -46,8 +46,7 @@ def run(arguments: Sequence[str]) -> int:
     except click.exceptions.Exit as end:
         return end.exit_code
     except click.ClickException as error:
-        error.show()
-        return Exit.USAGE
+        return show_usage_error(error, as_json)
     except (KeyboardInterrupt, click.Abort):
         print("authalic: interrupted; nothing was left half written", file=sys.stderr)
         return Exit.INTERRUPTED

@@ -4,14 +4,14 @@
 import json
 import re
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from . import options
-from .options import Command, Frame
+from .frame import Frame
+from .options import Command
 from .report import Exit
 
 if TYPE_CHECKING:
@@ -38,7 +38,8 @@ def _size(context: click.Context, option: click.Parameter, value: str | None) ->
 
 def _shared(command: Command) -> Command:
     """Options of every batch."""
-    decorators: tuple[Callable[[Command], Command], ...] = (
+    return options.decorated(
+        command,
         click.option("--out", required=True, type=folder, help="The folder of the batch."),
         click.option("--pattern", help="Names of files in folders, such as '*.pial'."),
         click.option("--scheduler", help="Address of a Dask scheduler, such as tcp://host:8786."),
@@ -50,9 +51,6 @@ def _shared(command: Command) -> Command:
         click.option("--again", is_flag=True, help="Map also what is done."),
         options.common,
     )
-    for decorator in reversed(decorators):
-        command = decorator(command)
-    return command
 
 
 _AREAL = click.option("--areal", is_flag=True, help="Also write log2 of each vertex's areal distortion.")
@@ -74,9 +72,9 @@ def batch() -> None:
 @options.descent
 @_AREAL
 @_shared
-def sphere(surfaces: tuple[Path, ...], **given: Any) -> int:
+def sphere(frame: Frame, surfaces: tuple[Path, ...], **given: Any) -> int:
     """Map closed SURFACES to the sphere."""
-    return _run("sphere", surfaces, **given)
+    return _run(frame, "sphere", surfaces, **given)
 
 
 @batch.command()
@@ -85,21 +83,22 @@ def sphere(surfaces: tuple[Path, ...], **given: Any) -> int:
 @options.descent
 @_AREAL
 @_shared
-def disk(surfaces: tuple[Path, ...], **given: Any) -> int:
+def disk(frame: Frame, surfaces: tuple[Path, ...], **given: Any) -> int:
     """Map SURFACES with a boundary to the disk."""
-    return _run("disk", surfaces, **given)
+    return _run(frame, "disk", surfaces, **given)
 
 
 @batch.command()
 @_PLACES
 @options.search
 @_shared
-def unwrap(surfaces: tuple[Path, ...], **given: Any) -> int:
+def unwrap(frame: Frame, surfaces: tuple[Path, ...], **given: Any) -> int:
     """Unwrap any SURFACES."""
-    return _run("unwrap", surfaces, **given)
+    return _run(frame, "unwrap", surfaces, **given)
 
 
 def _run(
+    frame: Frame,
     command: str,
     surfaces: tuple[Path, ...],
     *,
@@ -110,41 +109,35 @@ def _run(
     memory: int | None,
     retries: int,
     again: bool,
-    as_json: bool,
-    quiet: bool,
-    threads: int | None,
-    input_format: str | None,
-    output_format: str | None,
     areal: bool = False,
     **arguments: Any,
 ) -> int:
     from ..batch import find_subjects, run_batch
 
-    frame = Frame(as_json, quiet, None)
     with frame.progress(f"batch {command}") as progress:
         summary = run_batch(
             find_subjects(surfaces, pattern),
             out,
             command,
             options=arguments,
-            input_format=input_format,
-            output_format=output_format,
+            input_format=frame.input_format,
+            output_format=frame.output_format,
             areal=areal,
             scheduler=scheduler,
             workers=workers,
-            threads=threads,
+            threads=frame.threads,
             memory=memory,
             retries=retries,
             again=again,
             progress=progress,
             announce=progress.announce,
         )
-    _show(summary, as_json, quiet)
+    _show(summary, frame)
     return Exit.SUBJECTS if summary.failed else Exit.DONE
 
 
-def _show(summary: "Summary", as_json: bool, quiet: bool) -> None:
-    if as_json:
+def _show(summary: "Summary", frame: Frame) -> None:
+    if frame.as_json:
         print(json.dumps(summary.as_dict()))
         return
     for record in summary.failed[:_SHOWN]:
@@ -152,7 +145,7 @@ def _show(summary: "Summary", as_json: bool, quiet: bool) -> None:
         print(f"authalic: failed: {record['subject']}: {error['kind']}: {error['message']}", file=sys.stderr)
     if len(summary.failed) > _SHOWN:
         print(f"authalic: failed: {len(summary.failed) - _SHOWN} more, see the table", file=sys.stderr)
-    if not quiet:
+    if not frame.quiet:
         print(f"{summary.done} done, {summary.before} done before, {len(summary.failed)} failed")
         print(f"  {summary.table}")
 

@@ -7,27 +7,17 @@ from typing import Any
 import click
 
 from . import options
-from .options import Frame
+from .frame import Frame
 
 
 @click.command()
 @click.argument("surface", type=options.existing_or_stream)
-@click.argument("output", type=options.writable)
+@click.argument("output", type=options.writable_or_stream)
 @options.search
 @click.option("--margin", type=float, help="Between islands, in units of the square. [default: 0.002]")
 @click.option("--no-pack", is_flag=True, help="Leave each island where its map lies.")
 @options.common
-def unwrap(
-    surface: Path,
-    output: Path,
-    no_pack: bool,
-    as_json: bool,
-    quiet: bool,
-    threads: int | None,
-    input_format: str | None,
-    output_format: str | None,
-    **arguments: Any,
-) -> None:
+def unwrap(frame: Frame, surface: Path, output: Path, no_pack: bool, **arguments: Any) -> None:
     """Unwrap any SURFACE: seams, islands of even areas, packed into the unit square.
 
     OUTPUT holds the surface with the UVs. Formats with one UV point for each vertex (PLY, GLB, glTF, VTK,
@@ -35,35 +25,15 @@ def unwrap(
     """
     from ..runs.unwrap import unwrap_run
 
-    frame = Frame(as_json, quiet, threads)
-    options.check_streams(surface, output, input_format, output_format)
-    with options.files(surface, output) as (source, target), frame.progress("unwrap") as progress:
-        record = unwrap_run(
-            source,
-            target,
-            input_format=input_format,
-            output_format=output_format,
-            options=arguments | {"pack": False if no_pack else None},
-            progress=progress,
-        )
-    frame.show(record, surface, output)
+    frame.run(unwrap_run, surface, output, options=arguments | {"pack": False if no_pack else None})
 
 
 @click.command()
-@click.argument("surface", type=options.existing)
-@click.argument("output", type=options.writable_file)
+@click.argument("surface", type=options.existing_or_stream)
+@click.argument("output", type=options.writable_or_stream)
 @options.search
 @options.common
-def seams(
-    surface: Path,
-    output: Path,
-    as_json: bool,
-    quiet: bool,
-    threads: int | None,
-    input_format: str | None,
-    output_format: str | None,
-    **arguments: Any,
-) -> None:
+def seams(frame: Frame, surface: Path, output: Path, **arguments: Any) -> None:
     """Find seams of a SURFACE.
 
     OUTPUT is a csv with the two vertices of each seam, counted from 0; an npz with the arrays edges and
@@ -71,17 +41,7 @@ def seams(
     """
     from ..runs.unwrap import seams_run
 
-    frame = Frame(as_json, quiet, threads)
-    with frame.progress("seams") as progress:
-        record = seams_run(
-            surface,
-            output,
-            input_format=input_format,
-            output_format=output_format,
-            options=arguments,
-            progress=progress,
-        )
-    frame.show(record, surface, output)
+    frame.run(seams_run, surface, output, options=arguments)
 
 
 COMMANDS = (unwrap, seams)

@@ -9,17 +9,14 @@ from typing import Any
 import click
 
 from . import options
-from .options import Frame
+from .frame import STREAM, Frame, read_file
 from .report import show_info
-
-_JSON = click.option("--json", "as_json", is_flag=True, help="Print figures and errors as JSON.")
-_FORMAT = click.option("--input-format", type=options.format_names, help="Where the name does not say it.")
 
 
 @click.command()
 @click.argument("surface", type=options.existing_or_stream)
-@_FORMAT
-@_JSON
+@options.input_format
+@options.as_json
 def info(surface: Path, input_format: str | None, as_json: bool) -> None:
     """Print what a SURFACE is like, and which maps suit it.
 
@@ -28,19 +25,18 @@ def info(surface: Path, input_format: str | None, as_json: bool) -> None:
     """
     from ..runs.measure import info_run
 
-    options.check_streams(surface, surface, input_format, "")
-    with options.files(surface, Path()) as (source, _):
+    with read_file(surface, input_format) as source:
         record = info_run(source, input_format=input_format)
-    show_info(record | ({"input": "-"} if surface == options.STREAM else {}), as_json, sys.stdout)
+    show_info(record | ({"input": "-"} if surface == STREAM else {}), as_json, sys.stdout)
 
 
 @click.command()
 @click.argument("surface", type=options.existing)
 @click.argument("map", type=options.existing, required=False)
-@_FORMAT
+@options.input_format
 @click.option("--map-format", type=options.format_names, help="Where the name does not say it.")
 @options.areal_option
-@_JSON
+@options.as_json
 def measure(
     surface: Path,
     map: Path | None,
@@ -57,7 +53,7 @@ def measure(
     from ..runs.measure import measure_run
 
     record = measure_run(surface, map, areal=areal, input_format=input_format, image_format=map_format)
-    Frame(as_json, quiet=False, threads=None).show(record, surface)
+    Frame(as_json).show(record, surface)
 
 
 def _choice(*words: str) -> Callable[[click.Context, click.Parameter, str | None], Any]:
@@ -79,7 +75,7 @@ def _choice(*words: str) -> Callable[[click.Context, click.Parameter, str | None
 
 @click.command()
 @click.argument("surface", type=options.existing_or_stream)
-@click.argument("output", type=options.writable)
+@click.argument("output", type=options.writable_or_stream)
 @click.option(
     "--merge",
     callback=_choice("none"),
@@ -98,17 +94,7 @@ def _choice(*words: str) -> Callable[[click.Context, click.Parameter, str | None
 )
 @click.option("--keep", type=click.Choice(["all", "largest"]), help="The pieces to keep. [default: all]")
 @options.common
-def repair(
-    surface: Path,
-    output: Path,
-    merge: Any,
-    as_json: bool,
-    quiet: bool,
-    threads: int | None,
-    input_format: str | None,
-    output_format: str | None,
-    **arguments: Any,
-) -> None:
+def repair(frame: Frame, surface: Path, output: Path, merge: Any, **arguments: Any) -> None:
     """Make a SURFACE that can be mapped of any triangles.
 
     Equal points are merged, bad faces removed, edges of many faces split, faces oriented, pinholes closed.
@@ -117,16 +103,10 @@ def repair(
     from ..runs.record import given
     from ..runs.repair import repair_run
 
-    frame = Frame(as_json, quiet, threads)
-    options.check_streams(surface, output, input_format, output_format)
     chosen = given(arguments)
     if merge is not None:
         chosen["merge"] = None if merge is False else merge
-    with options.files(surface, output) as (source, target):
-        record = repair_run(
-            source, target, input_format=input_format, output_format=output_format, options=chosen
-        )
-    frame.show(record, surface, output)
+    frame.run(repair_run, surface, output, options=chosen)
 
 
 COMMANDS = (info, measure, repair)

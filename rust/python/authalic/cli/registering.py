@@ -7,13 +7,13 @@ from typing import Any
 import click
 
 from . import options
-from .options import Frame
+from .frame import Frame
 
 
 @click.command()
 @click.argument("source", type=options.existing)
 @click.argument("target", type=options.existing)
-@click.argument("output", type=options.writable_file)
+@click.argument("output", type=options.writable_or_stream)
 @click.option(
     "--landmarks",
     type=options.existing,
@@ -33,7 +33,7 @@ from .options import Frame
 )
 @click.option(
     "--pull",
-    type=(options.existing, options.writable_file),
+    type=(options.existing, options.writable),
     default=None,
     help="Values at the vertices of TARGET, and the file for them at those of SOURCE.",
 )
@@ -49,6 +49,7 @@ from .options import Frame
 @click.option("--angle-weight", type=float, help="[default: 1]")
 @options.common
 def register(
+    frame: Frame,
     source: Path,
     target: Path,
     output: Path,
@@ -56,11 +57,6 @@ def register(
     curves: Path | None,
     features: tuple[Path, Path] | None,
     pull: tuple[Path, Path] | None,
-    as_json: bool,
-    quiet: bool,
-    threads: int | None,
-    input_format: str | None,
-    output_format: str | None,
     **arguments: Any,
 ) -> None:
     """Register a SOURCE surface to a TARGET surface.
@@ -72,22 +68,8 @@ def register(
 
     if landmarks is not None and curves is not None:
         raise click.UsageError("give --landmarks or --curves, not both")
-    frame = Frame(as_json, quiet, threads)
-    with frame.progress("register") as progress:
-        record = register_run(
-            source,
-            target,
-            output,
-            landmarks=landmarks,
-            curves=curves,
-            features=features,
-            pull=pull,
-            input_format=input_format,
-            output_format=output_format,
-            options=arguments,
-            progress=progress,
-        )
-    frame.show(record, source, output)
+    chosen = {"landmarks": landmarks, "curves": curves, "features": features, "pull": pull}
+    frame.run(register_run, source, output, target=target, options=arguments, **chosen)
 
 
 COMMANDS = (register,)

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from enum import IntEnum
 from typing import Any, TextIO
 
+import click
+
 from .._native import MeshError, SolverError
 from ..io import FileError, MissingExtra
 from ..runs.record import problem
@@ -38,6 +40,19 @@ _FIGURES = (
     ("strain_mean", "strain mean {:.4g}"),
     ("folded", "folded faces {}"),
 )
+_COMMAND_WORDS = (
+    ('unwrap with seams="auto"', "authalic unwrap"),
+    ("repair with close_handles=True", "authalic repair --close-handles all"),
+    ("authalic.repair mends", "authalic repair mends"),
+    ("repair=True", "--repair"),
+    ("fill_holes=True", "--fill-holes"),
+    ("by sphere_map", "by authalic sphere"),
+    ("by disk_map", "by authalic disk"),
+    ("(cut returns them)", "(authalic repair --keep largest keeps one)"),
+    ("source_landmarks, target_landmarks", "--landmarks"),
+    ("features=", "--features"),
+)
+"""Functions and arguments of the library, as its messages name them, and what the command calls them."""
 _FOLLOWED = ("areal_distortion", "pulled", "table")
 
 
@@ -58,6 +73,7 @@ def show_error(error: BaseException, as_json: bool) -> Exit:
     """Prints an error on stderr, with the elements at fault; returns the exit code."""
     code = exit_code(error)
     data = problem(error)  # type: ignore[arg-type]
+    data["message"] = in_command_words(data["message"])
     if as_json:
         print(json.dumps({"error": data | {"exit_code": int(code)}}), file=sys.stderr)
         return code
@@ -67,6 +83,23 @@ def show_error(error: BaseException, as_json: bool) -> Exit:
     return code
 
 
+def in_command_words(message: str) -> str:
+    """A message of the library as a user of the command needs it."""
+    for library, command in _COMMAND_WORDS:
+        message = message.replace(library, command)
+    return message
+
+
+def show_usage_error(error: click.ClickException, as_json: bool) -> Exit:
+    """Prints what is wrong with the words of a command."""
+    if as_json:
+        data = {"message": error.format_message(), "kind": "usage", "exit_code": int(Exit.USAGE)}
+        print(json.dumps({"error": data}), file=sys.stderr)
+    else:
+        error.show()
+    return Exit.USAGE
+
+
 def show_record(record: Mapping[str, Any], as_json: bool, stream: TextIO) -> None:
     """Prints the record of a run: as one line of JSON, or in words."""
     if as_json:
@@ -74,11 +107,11 @@ def show_record(record: Mapping[str, Any], as_json: bool, stream: TextIO) -> Non
         return
     place = f" -> {record['output']}" if "output" in record else ""
     print(f"{record['input']}{place}", file=stream)
-    print(f"  {record['vertices']:,} vertices, {record['faces']:,} faces", file=stream)
+    print(f"  {_counted(record['vertices'], 'vertices')}, {_counted(record['faces'], 'faces')}", file=stream)
     for line in record.get("repair_report", ()):
         print(f"  {line}", file=stream)
     if "status" in record:
-        after = f" after {record['iterations']} iterations" if "iterations" in record else ""
+        after = f" after {_counted(record['iterations'], 'iterations')}" if "iterations" in record else ""
         print(f"  {record['status']}{after}, {record['seconds']:.2f} s", file=stream)
     figures = [text.format(record[key]) for key, text in _FIGURES if record.get(key) is not None]
     if figures:
@@ -101,7 +134,7 @@ def show_info(record: Mapping[str, Any], as_json: bool, stream: TextIO) -> None:
         if key in record:
             print(f"  {key.replace('_', ' ')}: {record[key]:,}", file=stream)
     if "problem" in record:
-        print(f"  problem: {record['problem']['message']}", file=stream)
+        print(f"  problem: {in_command_words(record['problem']['message'])}", file=stream)
     else:
         print(f"  suits: {', '.join(record['suits'])}", file=stream)
 
@@ -111,11 +144,16 @@ def show_notes(record: Mapping[str, Any]) -> None:
     if record.get("status") not in (None, "converged"):
         _note(f"the run ended early ({record['status']}); the map is sound, but not as good as it could be")
     if record.get("folded_in_file"):
-        _note(f"{record['folded_in_file']} faces fold in the single precision of the file")
+        _note(f"folded by the single precision of the file: {_counted(record['folded_in_file'], 'faces')}")
     if record.get("folded"):
-        _note(f"{record['folded']} faces are folded")
+        _note(f"folded: {_counted(record['folded'], 'faces')}")
     for warning in record.get("warnings", ()):
         _note(warning)
+
+
+def _counted(count: int, noun: str) -> str:
+    singular = {"vertices": "vertex", "faces": "face", "iterations": "iteration"}
+    return f"{count:,} {singular[noun] if count == 1 else noun}"
 
 
 def _note(text: str) -> None:

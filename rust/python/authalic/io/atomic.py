@@ -6,6 +6,8 @@ import os
 from pathlib import Path
 from types import TracebackType
 
+from .errors import FileError
+
 PREFIX = ".authalic-"
 """Names of files that are not whole yet begin with this."""
 
@@ -47,8 +49,10 @@ class Outputs:
 
         Raises
         ------
-        FileNotFoundError
-            If there is no such folder.
+        FileNotFoundError, PermissionError, IsADirectoryError
+            If there is no such folder, if it cannot be written to, or if the file itself is a folder.
+        FileError
+            If it was added before.
 
         Examples
         --------
@@ -63,6 +67,12 @@ class Outputs:
         target = Path(path).resolve()
         if not target.parent.is_dir():
             raise FileNotFoundError(f"there is no folder {target.parent} to write {target.name} into")
+        if not os.access(target.parent, os.W_OK):
+            raise PermissionError(f"the folder {target.parent} cannot be written to; choose another one")
+        if target.is_dir():
+            raise IsADirectoryError(f"{target} is a folder, not a file; choose another name")
+        if target in self._places.values():
+            raise FileError(path, "two results would be written to this file; give them different names")
         temporary = target.parent / f"{PREFIX}{os.getpid()}-{os.urandom(4).hex()}-{target.name}"
         self._places[temporary] = target
         return temporary

@@ -161,8 +161,9 @@ def save_values(path: Path, values: Reals, format: Format) -> None:
 def _reading(path: str | Path, format: Format, function: str) -> Any:
     """What a format's function returns, with every fault of the file as FileError."""
     module = importlib.import_module(f".{format.module}", __package__)
-    with open(path, "rb"):
-        pass  # OSError
+    with open(path, "rb") as file:
+        if not file.read(1):
+            raise FileError(path, "the file is empty")
     try:
         return getattr(module, function)(Path(path), format.name)
     except (MissingExtra, FileError, MemoryError):

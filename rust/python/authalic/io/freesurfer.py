@@ -26,7 +26,9 @@ def read_mesh(path: Path, name: str) -> MeshData:
     content = path.read_bytes()
     if not content.startswith(_TRIANGLES):
         return _read_old_mesh(path)
-    place = content.index(b"\n", content.index(b"\n") + 1) + 1
+    place = content.find(b"\n", content.find(b"\n") + 1) + 1
+    if place == 0 or place + 8 > len(content):
+        raise ValueError("it ends before the numbers of its vertices and faces")
     n, m = np.frombuffer(content, ">i4", 2, place).tolist()
     faces_at, end = place + 8 + 12 * n, place + 8 + 12 * (n + m)
     if min(n, m) < 0 or end > len(content):
@@ -48,6 +50,8 @@ def read_values(path: Path, name: str) -> Reals:
     content = path.read_bytes()
     if not content.startswith(_CURV):
         return np.asarray(_nibabel().read_morph_data(str(path)), np.float64)
+    if len(content) < 15:
+        raise ValueError("it ends before the number of its values")
     n, _, columns = np.frombuffer(content, ">i4", 3, 3).tolist()
     if columns != 1 or n < 0 or 15 + 4 * n > len(content):
         raise ValueError(f"{n} vertices with {columns} values do not fit into {len(content)} bytes")

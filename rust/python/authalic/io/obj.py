@@ -22,12 +22,13 @@ def read_mesh(path: Path, name: str) -> MeshData:
     with open(path, encoding="utf-8", errors="replace") as file:
         for number, line in enumerate(_joined(file), start=1):
             words = line.split()
+            keyword = words[0] if words else ""
             try:
-                if line.startswith("v "):
-                    points.append([float(word) for word in words[1:4]])
-                elif line.startswith("vt "):
-                    uv.append([float(word) for word in words[1:3]])
-                elif line.startswith("f "):
+                if keyword == "v":
+                    points.append([float(words[k]) for k in (1, 2, 3)])
+                elif keyword == "vt":
+                    uv.append([float(word) for word in (*words[1:3], "0")[:2]])
+                elif keyword == "f":
                     polygon, uv_polygon = _corners(words[1:], len(points), len(uv))
                     polygons.append(polygon)
                     uv_polygons.append(uv_polygon)
@@ -81,6 +82,8 @@ def _corners(words: list[str], points: int, uv_points: int) -> tuple[list[int], 
 def _index(word: str, count: int) -> int:
     """From 1 onwards, or from -1 backwards."""
     index = int(word)
+    if index == 0 or index < -count:
+        raise IndexError(f"{index} is no index")
     return index - 1 if index > 0 else count + index
 
 

@@ -158,6 +158,8 @@ class _Binary:
 
     def _unpack(self, kind: str, count: int) -> list[Any]:
         pattern = struct.Struct(f"{self.order}{count}{_STRUCT[kind]}")
+        if self.place + pattern.size > len(self.content):
+            raise ValueError("the file ends early")
         numbers = pattern.unpack_from(self.content, self.place)
         self.place += pattern.size
         return list(numbers)

@@ -25,9 +25,11 @@ def layout_run(
     progress: Progress = None,
 ) -> Record:
     """Lays a closed surface out flat; `layout` are arguments of `SphereMap.layout`, else as `disk_run`."""
-    # 1. The format, before work starts
+    # 1. What is to be written, before work starts
     options, layout = given(options or {}), given(layout or {})
     format = mesh_format(target, output_format)
+    outputs = Outputs()
+    place = outputs.add(target)
     # 2. The map, and its layout
     mesh, record = read_input(source, input_format, "layout", {**options, **layout})
     sphere = sphere_map(mesh.vertices, mesh.faces, **options, progress=progress)
@@ -37,9 +39,9 @@ def layout_run(
     figures = distortion(mesh.vertices[flat.vertex_of], flat.faces, flat.points)
     record |= {"status": flat.status, "seconds": sphere.seconds + flat.seconds} | distortion_figures(figures)
     # 3. The file
-    with Outputs() as outputs:
+    with outputs:
         result = MeshData(
             mesh.vertices, mesh.faces, np.asarray(flat.points, np.float64), flat.faces, mesh.metadata
         )
-        save_flat(outputs.add(target), result, format, record)
+        save_flat(place, result, format, record)
     return record | {"output": str(target)}

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from .._native import MeshError, Surface, distortion
-from ..io import FileError, MeshData, Outputs, mesh_format, read_mesh, value_format
-from ..io.files import save_values
-from .record import Record, areal_distortion, distortion_figures, problem, read_input
+from ..io import FileError, MeshData, Outputs, mesh_format, read_mesh
+from .areal import ArealFile
+from .record import Record, distortion_figures, problem, read_input
 
 
 def measure_run(
@@ -38,18 +38,15 @@ def measure_run(
     dict
         The record of the run.
     """
-    areal_format = None if areal is None else value_format(areal)
+    outputs = Outputs()
+    areal_file = ArealFile(areal, outputs)
     mesh, record = read_input(source, input_format, "measure", {})
     vertices, faces, points = _map(mesh, source, image, image_format)
     record |= distortion_figures(distortion(vertices, faces, points))
-    if areal is not None and areal_format is not None:
-        if len(vertices) != len(mesh.vertices):
-            raise FileError(source, "the UVs have seams, so that vertices have no single areal distortion")
-        with Outputs() as outputs:
-            values = areal_distortion(vertices, faces, points)
-            save_values(outputs.add(areal), values, areal_format)
-        record["areal_distortion"] = str(areal)
-    return record
+    if areal is not None and len(vertices) != len(mesh.vertices):
+        raise FileError(source, "the UVs have seams, so that vertices have no single areal distortion")
+    with outputs:
+        return record | areal_file.save(vertices, faces, points)
 
 
 def info_run(source: Path, *, input_format: str | None = None) -> Record:

@@ -6,8 +6,6 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from .._native import Distortion, __version__
 from ..io import MeshData, read_mesh
 
@@ -30,6 +28,19 @@ def read_input(
         "faces": len(mesh.faces),
     }
     return mesh, record
+
+
+def map_metadata(mesh: MeshData, geometry: str) -> dict[str, Any]:
+    """What a surface's file says beside its arrays, as it is true of a map.
+
+    GIFTI names the kind of geometry ("Spherical", "Flat"). Its transform is for the place of the surface.
+    """
+    kept = {key: value for key, value in mesh.metadata.items() if key != "gifti_space"}
+    if "gifti" in kept:
+        of_surface = ("AnatomicalStructureSecondary", "GeometricType")
+        facts = {key: value for key, value in kept["gifti"].items() if key not in of_surface}
+        kept["gifti"] = facts | {"GeometricType": geometry}
+    return kept
 
 
 def map_figures(result: Any) -> Record:
@@ -63,24 +74,3 @@ def problem(error: Exception) -> Record:
     fields = ("kind", "side", "curve", "second_curve", "indices", "count")
     data = {key: getattr(error, key, None) for key in fields}
     return {"message": str(error)} | {key: value for key, value in data.items() if value is not None}
-
-
-def areal_distortion(vertices: np.ndarray, faces: np.ndarray, image: np.ndarray) -> np.ndarray:
-    """log₂ of each vertex's share of the image's area over its share of the surface's, (n,).
-
-    The area of a vertex is a third of that of its faces. 0 is preserved, 1 is twice as large.
-    """
-    shares = []
-    for points in (vertices, image):
-        areas = _vertex_areas(np.asarray(points, np.float64), faces)
-        shares.append(areas / areas.sum())
-    return np.asarray(np.log2(shares[1] / shares[0]))
-
-
-def _vertex_areas(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    a, b, c = (points[faces[:, k]] for k in range(3))
-    if points.shape[1] == 2:
-        doubled = np.abs(np.linalg.det(np.stack([b - a, c - a], axis=2)))
-    else:
-        doubled = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    return np.bincount(faces.ravel(), np.repeat(doubled / 6, 3), minlength=len(points))

@@ -17,9 +17,9 @@ from .record import Progress, Record, given, read_input
 
 def register_run(
     source: Path,
-    target: Path,
     output: Path,
     *,
+    target: Path,
     landmarks: Path | None = None,
     curves: Path | None = None,
     features: tuple[Path, Path] | None = None,
@@ -36,8 +36,8 @@ def register_run(
     source, target : Path
         The surfaces: both closed, or both with a boundary.
     output : Path
-        The source's faces with its vertices at their places on the target. As npz it also has `triangles` and
-        `barycentric`, the place of each vertex on the target.
+        The file for the source's faces with its vertices at their places on the target. As npz it also has
+        `triangles` and `barycentric`, the place of each vertex on the target.
     landmarks : Path, optional
         Text with a vertex of the source and one of the target in each row, counted from 0; with the weight of
         a soft pair in a third column, inf for exact pairs.
@@ -62,21 +62,24 @@ def register_run(
     # 1. Everything is read before work starts
     options = given(options or {})
     format = mesh_format(output, output_format)
+    outputs = Outputs()
+    place = outputs.add(output)
     mesh, record = read_input(source, input_format, "register", options)
     other = read_mesh(target, input_format)
-    values = None if pull is None else (read_values(pull[0]), value_format(pull[1]))
+    pulled = None if pull is None else (read_values(pull[0]), outputs.add(pull[1]), value_format(pull[1]))
     if features is not None:
         options["features"] = tuple(map(read_values, features))
     # 2. The registration
     found = _register(mesh, other, landmarks, curves, options, progress)
     record |= _figures(found) | {"target": str(target), "target_vertices": len(other.vertices)}
     # 3. The files
-    with Outputs() as outputs:
+    with outputs:
         arrays = {"triangles": found.triangles, "barycentric": found.barycentric}
-        metadata = dict(mesh.metadata) | {"record": dict(record), "arrays": arrays}
-        save_mesh(outputs.add(output), MeshData(found.positions, mesh.faces, metadata=metadata), format)
-        if pull is not None and values is not None:
-            save_values(outputs.add(pull[1]), found.pull(values[0]), values[1])
+        metadata = dict(other.metadata) | {"record": dict(record), "arrays": arrays}
+        save_mesh(place, MeshData(found.positions, mesh.faces, metadata=metadata), format)
+        if pull is not None and pulled is not None:
+            values, pulled_place, pulled_format = pulled
+            save_values(pulled_place, found.pull(values), pulled_format)
             record["pulled"] = str(pull[1])
     return record | {"output": str(output)}
 

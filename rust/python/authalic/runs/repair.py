@@ -8,7 +8,7 @@ from typing import Any
 from .._native import Repaired, repair
 from ..io import MeshData, Outputs, mesh_format
 from ..io.files import save_mesh
-from .record import Record, given, read_input
+from .record import Progress, Record, given, read_input
 
 
 def repair_run(
@@ -18,22 +18,25 @@ def repair_run(
     input_format: str | None = None,
     output_format: str | None = None,
     options: Mapping[str, Any] | None = None,
+    progress: Progress = None,
 ) -> Record:
     """Repairs a mesh; `options` are arguments of `authalic.repair`, else as `sphere_run`.
 
     As npz the file also has `vertex_of`, `face_of`, `vertex_to` and `face_to`, which lead from and to the
-    elements of the source.
+    elements of the source. A repair takes too little time for progress.
     """
     options = dict(options or {})
     format = mesh_format(target, output_format)
+    outputs = Outputs()
+    place = outputs.add(target)
     mesh, record = read_input(source, input_format, "repair", given(options))
     found = repair(mesh.vertices, mesh.faces, **options)
     record |= repair_figures(found)
-    with Outputs() as outputs:
+    with outputs:
         names = ("vertex_of", "face_of", "vertex_to", "face_to")
         arrays = {name: getattr(found, name) for name in names}
         metadata = dict(mesh.metadata) | {"record": dict(record), "arrays": arrays}
-        save_mesh(outputs.add(target), MeshData(found.vertices, found.faces, metadata=metadata), format)
+        save_mesh(place, MeshData(found.vertices, found.faces, metadata=metadata), format)
     return record | {"output": str(target)}
 
 

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from .._native import distortion, sphere_map
-from ..io import MeshData, Outputs, mesh_format, value_format
-from ..io.files import save_mesh, save_values
-from .record import Progress, Record, areal_distortion, given, map_figures, read_input
+from ..io import MeshData, Outputs, mesh_format
+from ..io.files import save_mesh
+from .areal import ArealFile
+from .record import Progress, Record, given, map_figures, map_metadata, read_input
 from .repair import repair_figures, repaired_mesh
 
 FREESURFER_RADIUS = 100.0
@@ -49,10 +50,11 @@ def sphere_run(
     dict
         The record of the run.
     """
-    # 1. The formats, before work starts
+    # 1. What is to be written, before work starts
     options = given(options or {})
     format = mesh_format(target, output_format)
-    areal_format = None if areal is None else value_format(areal)
+    outputs = Outputs()
+    place, areal_file = outputs.add(target), ArealFile(areal, outputs)
     # 2. The map
     mesh, record = read_input(source, input_format, "sphere", options)
     result = sphere_map(mesh.vertices, mesh.faces, **options, progress=progress)
@@ -63,14 +65,10 @@ def sphere_run(
     points = radius * result.positions
     record |= {"radius": radius} | _in_single_precision(mesh, points, format.precision)
     # 4. The files
-    with Outputs() as outputs:
-        metadata = dict(mesh.metadata) | {"record": record}
-        save_mesh(outputs.add(target), MeshData(points, mesh.faces, metadata=metadata), format)
-        record["output"] = str(target)
-        if areal is not None and areal_format is not None:
-            values = areal_distortion(mesh.vertices, mesh.faces, result.positions)
-            save_values(outputs.add(areal), values, areal_format)
-            record["areal_distortion"] = str(areal)
+    with outputs:
+        metadata = map_metadata(mesh, "Spherical") | {"record": dict(record)}
+        save_mesh(place, MeshData(points, mesh.faces, metadata=metadata), format)
+        record |= {"output": str(target)} | areal_file.save(mesh.vertices, mesh.faces, result.positions)
     return record
 
 

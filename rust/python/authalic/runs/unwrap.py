@@ -29,6 +29,8 @@ def unwrap_run(
     """Unwraps a surface; `options` are arguments of `authalic.unwrap`, else as `disk_run`."""
     options = given(options or {})
     format = mesh_format(target, output_format)
+    outputs = Outputs()
+    place = outputs.add(target)
     mesh, record = read_input(source, input_format, "unwrap", options)
     found = unwrap((mesh.vertices, mesh.faces), **options, progress=progress)
     record |= {
@@ -36,9 +38,9 @@ def unwrap_run(
         **{"shear": found.shear, "shear_p99": found.shear_p99, "area_ratio_std": found.area_ratio_std},
         **{"packed": found.packed, "seconds": found.seconds},
     }
-    with Outputs() as outputs:
+    with outputs:
         result = MeshData(mesh.vertices, mesh.faces, found.uv, found.faces, mesh.metadata)
-        save_flat(outputs.add(target), result, format, record)
+        save_flat(place, result, format, record)
     return record | {"output": str(target)}
 
 
@@ -60,14 +62,15 @@ def seams_run(
     format = output_format or target.name.rsplit(".", 1)[-1].lower()
     if format not in SEAM_FORMATS:
         raise FileError(target, f"seams are written as {', '.join(SEAM_FORMATS)}")
+    outputs = Outputs()
+    path = outputs.add(target)
     mesh, record = read_input(source, input_format, "seams", options)
     found = seams((mesh.vertices, mesh.faces), **options, progress=progress)
     record |= {
         **{"status": found.status, "islands": found.islands, "seams": len(found.edges)},
         **{"seam_length": found.length, "shear_predicted": found.predicted, "seconds": found.seconds},
     }
-    with Outputs() as outputs:
-        path = outputs.add(target)
+    with outputs:
         if format == "csv":
             rows = "".join(f"{a},{b}\n" for a, b in found.edges.tolist())
             path.write_text("first,second\n" + rows, encoding="ascii")

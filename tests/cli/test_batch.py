@@ -327,6 +327,34 @@ def test_subjects_come_from_folders_files_and_tables(folder):
     assert subjects[0].surface == folder / "ball.obj" and subjects[1].surface == folder / "study" / "x.obj"
 
 
+def test_subjects_of_a_table_have_folders_of_their_own(run, folder):
+    """Their surfaces have the same names."""
+    for number, subject in enumerate(("sub-01", "sub-02")):
+        (folder / subject).mkdir()
+        write_mesh(folder / subject / "lh.white", MeshData(*bumps(number)))
+    rows_of_table = "subject,surface\nsub-01,sub-01/lh.white\nsub-02,sub-02/lh.white\n"
+    (folder / "table.csv").write_text(rows_of_table)
+    result = run("batch", "sphere", "table.csv", "--out", "out", "--areal", "--workers", 1)
+    assert result.code == 0, result.err
+    for number, subject in enumerate(("sub-01", "sub-02")):
+        sphere = read_mesh(folder / "out" / "maps" / subject / "lh.authalic.sphere").vertices / 100
+        assert np.allclose(sphere, authalic.sphere_map(*bumps(number)).positions, atol=1e-3)
+        assert (folder / "out" / "maps" / subject / "lh.authalic.areal").exists()
+
+
+def test_maps_of_a_batch_are_no_subjects(run, folder):
+    """The batch's folder may lie among the surfaces."""
+    write_subjects(folder / "study", 2)
+    for before in (0, 2):
+        words = ("batch", "sphere", "study", "--out", "study/derived/spheres", "--workers", 1, "--json")
+        record = run(*words).record
+        assert (record["subjects"], record["before"], record["failed"]) == (2, before, [])
+    named = find_subjects([folder / "study" / "derived" / "spheres" / "maps"])
+    assert [subject.name for subject in named] == ["s00.sphere.off", "s01.sphere.off"]
+    patterned = find_subjects([folder / "study"], pattern="study/*.off")
+    assert [subject.name for subject in patterned] == ["s00.off", "s01.off"]
+
+
 @pytest.mark.parametrize(
     ("table", "error", "said"),
     [

@@ -17,7 +17,7 @@ from .cluster import connected, native_threads
 from .errors import SubjectsError
 from .memory import estimate
 from .schedule import Schedule
-from .store import MAPS, is_done, read_records, remove_record, write_table
+from .store import is_done, make_folder, map_place, read_records, remove_record, write_table
 from .subjects import Subject
 from .task import RUNS, Task
 
@@ -155,7 +155,7 @@ def run_batch(
     folder = Path(folder).resolve()
     tasks = _tasks(subjects, folder, command, given(options or {}), input_format, output_format, areal)
     # 2. What is done
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     remove_leftovers(folder)
     records = read_records(folder)
     missing = [task for task in tasks if again or not _is_done(task, records)]
@@ -242,8 +242,7 @@ def _tasks(
     for subject in subjects:
         surface = Path(subject.surface)
         format = output_format or OUTPUT_FORMATS[command] or mesh_format(surface, input_format).name
-        place = folder / MAPS / Path(subject.name).parent / surface.name
-        output = map_output(place, command, format)
+        output = map_output(map_place(folder, subject.name, surface), command, format)
         arguments: dict[str, Any] = {
             "options": options,
             "input_format": input_format,

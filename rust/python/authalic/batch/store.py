@@ -32,6 +32,26 @@ _COLUMNS = (
 """The columns of the table. Options, indices and repairs are JSON."""
 
 
+def make_folder(folder: Path) -> None:
+    """Makes a batch's folder, so that it can be told from one of surfaces from now on."""
+    for part in (MAPS, RECORDS):
+        (folder / part).mkdir(parents=True, exist_ok=True)
+
+
+def is_batch_folder(folder: Path) -> bool:
+    return (folder / MAPS).is_dir() and (folder / RECORDS).is_dir()
+
+
+def map_place(folder: Path, subject: str, surface: Path) -> Path:
+    """Where a subject's map would lie if it had the name of the surface.
+
+    A subject from a folder is named after the file; one from a table may be named otherwise, and then has a
+    folder of its own.
+    """
+    place = folder / MAPS / subject
+    return place if place.name == surface.name else place / surface.name
+
+
 def record_path(folder: Path, subject: str) -> Path:
     return folder / RECORDS / f"{subject}.json"
 

@@ -3,7 +3,7 @@
 
 import csv
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from ..io import FileError
 from ..io.atomic import PREFIX
 from ..io.formats import is_mesh_file
 from .errors import SubjectsError
+from .store import is_batch_folder
 
 TABLES = (".csv", ".tsv")
 _CORTEX = ("lh.white", "rh.white")
@@ -38,8 +39,9 @@ def find_subjects(places: Iterable[str | Path], pattern: str | None = None) -> l
     Parameters
     ----------
     places : iterable of str or Path
-        Files of surfaces; folders, which are searched with those below them; and tables: csv or tsv with the
-        columns `subject` and `surface`, whose paths are relative to the table.
+        Files of surfaces; folders, which are searched with those below them, but for what batches have
+        written there; and tables: csv or tsv with the columns `subject` and `surface`, whose paths are
+        relative to the table.
     pattern : str, optional
         The names of files in folders, such as ``"*.pial"``. Default: all meshes by their suffix, and
         FreeSurfer's `lh.white` and `rh.white`.
@@ -80,12 +82,16 @@ def find_subjects(places: Iterable[str | Path], pattern: str | None = None) -> l
     return sorted(subjects, key=lambda subject: subject.name)
 
 
-def _search(folder: Path, pattern: str | None) -> list[Path]:
-    if pattern is not None:
-        found = [path for path in folder.rglob(pattern) if path.is_file()]
-    else:
-        found = [path for path in folder.rglob("*") if path.name in _CORTEX or is_mesh_file(path)]
-    return [_absolute(path) for path in found if not path.name.startswith(PREFIX)]
+def _search(folder: Path, pattern: str | None) -> Iterator[Path]:
+    """The surfaces in a folder and below, except for the maps of batches."""
+    for place, folders, files in os.walk(folder):
+        here = Path(place)
+        if here != folder and is_batch_folder(here):
+            folders.clear()
+            continue
+        for path in (here / name for name in files if not name.startswith(PREFIX)):
+            if path.match(pattern) if pattern is not None else path.name in _CORTEX or is_mesh_file(path):
+                yield _absolute(path)
 
 
 def _read_table(path: Path) -> list[Subject]:
@@ -124,5 +130,8 @@ def _check(subjects: list[Subject]) -> None:
     for subject in subjects:
         if subject.name in seen:
             first = seen[subject.name].surface
-            raise SubjectsError(f"two subjects are named {subject.name}: {first} and {subject.surface}")
+            raise SubjectsError(
+                f"two subjects are named {subject.name}: {first} and {subject.surface}; "
+                "name them for example sub-01/lh and sub-01/rh"
+            )
         seen[subject.name] = subject

@@ -342,6 +342,17 @@ def test_subjects_of_a_table_have_folders_of_their_own(run, folder):
         assert (folder / "out" / "maps" / subject / "lh.authalic.areal").exists()
 
 
+@pytest.mark.parametrize("name", ["sphere", "disk", "unwrap"])
+def test_batches_take_the_options_of_their_commands(name):
+    from authalic.cli.app import authalic as command
+
+    own, of_batch = (
+        {option for parameter in place.commands[name].params for option in parameter.opts if "--" in option}
+        for place in (command, command.commands["batch"])
+    )
+    assert own - of_batch <= {"--radius"} and len(own) > 8
+
+
 def test_maps_of_a_batch_are_no_subjects(run, folder):
     """The batch's folder may lie among the surfaces."""
     write_subjects(folder / "study", 2)

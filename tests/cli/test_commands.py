@@ -134,6 +134,14 @@ def test_unwrap_writes_the_librarys_uvs_at_each_corner(run, folder):
     assert result.record["islands"] == expected.islands and result.record["shear"] == expected.shear
 
 
+def test_unwrap_leaves_islands_where_they_are_or_apart(run, folder):
+    for words, options in ((["--no-pack"], {"pack": False}), (["--margin", "0.05"], {"margin": 0.05})):
+        result = run("unwrap", "torus.obj", "uv.obj", *words, "--json")
+        expected = authalic.unwrap(tuple(meshes.torus()), **options)
+        assert np.array_equal(read_mesh(folder / "uv.obj").uv, expected.uv)
+        assert result.record["options"] == options
+
+
 def test_seams_are_written_as_a_table_as_arrays_and_as_lines(run, folder):
     expected = authalic.seams(tuple(meshes.torus())).edges
     for name in ("seams.csv", "seams.npz", "seams.obj"):

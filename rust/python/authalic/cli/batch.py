@@ -69,6 +69,7 @@ def batch() -> None:
 
 @batch.command()
 @_PLACES
+@options.closed
 @options.descent
 @_AREAL
 @_shared
@@ -91,6 +92,7 @@ def disk(frame: Frame, surfaces: tuple[Path, ...], **given: Any) -> int:
 @batch.command()
 @_PLACES
 @options.search
+@options.packing
 @_shared
 def unwrap(frame: Frame, surfaces: tuple[Path, ...], **given: Any) -> int:
     """Unwrap any SURFACES."""

@@ -14,10 +14,9 @@ from .frame import Frame
 @click.argument("surface", type=options.existing_or_stream)
 @click.argument("output", type=options.writable_or_stream)
 @options.search
-@click.option("--margin", type=float, help="Between islands, in units of the square. [default: 0.002]")
-@click.option("--no-pack", is_flag=True, help="Leave each island where its map lies.")
+@options.packing
 @options.common
-def unwrap(frame: Frame, surface: Path, output: Path, no_pack: bool, **arguments: Any) -> None:
+def unwrap(frame: Frame, surface: Path, output: Path, **arguments: Any) -> None:
     """Unwrap any SURFACE: seams, islands of even areas, packed into the unit square.
 
     OUTPUT holds the surface with the UVs. Formats with one UV point for each vertex (PLY, GLB, glTF, VTK,
@@ -25,7 +24,7 @@ def unwrap(frame: Frame, surface: Path, output: Path, no_pack: bool, **arguments
     """
     from ..runs.unwrap import unwrap_run
 
-    frame.run(unwrap_run, surface, output, options=arguments | {"pack": False if no_pack else None})
+    frame.run(unwrap_run, surface, output, options=arguments)
 
 
 @click.command()

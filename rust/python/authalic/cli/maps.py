@@ -33,12 +33,7 @@ def disk(frame: Frame, surface: Path, output: Path, areal: Path | None, **argume
 @click.argument("surface", type=options.existing_or_stream)
 @click.argument("output", type=options.writable_or_stream, required=False)
 @click.option("--radius", type=float, help="Of the sphere. [default: 100 for FreeSurfer and GIFTI, else 1]")
-@click.option(
-    "--method",
-    type=click.Choice(["gauss_newton", "gradient_descent", "fixed_point"]),
-    help="The optimizer. [default: gauss_newton]",
-)
-@options.fill_holes
+@options.closed
 @options.descent
 @options.areal_option
 @options.common

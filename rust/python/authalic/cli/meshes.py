@@ -95,7 +95,7 @@ def _choice(*words: str) -> Callable[[click.Context, click.Parameter, str | None
 @click.option("--keep", type=click.Choice(["all", "largest"]), help="The pieces to keep. [default: all]")
 @options.common
 def repair(frame: Frame, surface: Path, output: Path, merge: Any, **arguments: Any) -> None:
-    """Make a SURFACE that can be mapped of any triangles.
+    """Make a surface that can be mapped out of any triangles.
 
     Equal points are merged, bad faces removed, edges of many faces split, faces oriented, pinholes closed.
     UVs are not kept.

@@ -60,6 +60,19 @@ fill_holes = click.option(
 )
 
 
+def closed(command: Command) -> Command:
+    """Options of sphere maps."""
+    return decorated(
+        command,
+        click.option(
+            "--method",
+            type=click.Choice(["gauss_newton", "gradient_descent", "fixed_point"]),
+            help="The optimizer. [default: gauss_newton]",
+        ),
+        fill_holes,
+    )
+
+
 def boundary(command: Command) -> Command:
     """Options of disk maps."""
     return decorated(
@@ -83,6 +96,19 @@ def search(command: Command) -> Command:
         click.option("--symmetry", type=click.Choice(["auto", "off"]), help="[default: auto]"),
         click.option("--max-islands", type=click.IntRange(1), help="Limit of the number of islands."),
         click.option("--overlap", is_flag=True, default=None, help="Islands may overlap themselves."),
+    )
+
+
+def packing(command: Command) -> Command:
+    """Where islands lie."""
+    return decorated(
+        command,
+        click.option(
+            "--margin", type=float, help="Between islands, in units of the square. [default: 0.002]"
+        ),
+        click.option(
+            "--no-pack", "pack", flag_value=False, default=None, help="Leave each island where its map lies."
+        ),
     )
 
 

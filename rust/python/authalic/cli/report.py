@@ -132,7 +132,8 @@ def show_info(record: Mapping[str, Any], as_json: bool, stream: TextIO) -> None:
     show_record(record, False, stream)
     for key in ("components", "genus", "boundary_loops", "area", "uv_points"):
         if key in record:
-            print(f"  {key.replace('_', ' ')}: {record[key]:,}", file=stream)
+            number = f"{record[key]:,.6g}" if key == "area" else f"{record[key]:,}"
+            print(f"  {key.replace('_', ' ')}: {number}", file=stream)
     if "problem" in record:
         print(f"  problem: {in_command_words(record['problem']['message'])}", file=stream)
     else:

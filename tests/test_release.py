@@ -3,6 +3,7 @@
 
 import hashlib
 import json
+import os
 import re
 import zipfile
 from pathlib import Path
@@ -126,6 +127,7 @@ def test_this_machine_has_a_platform():
         platforms.named("solaris")
 
 
+@pytest.mark.skipif(os.name == "nt", reason="a script is no program there")
 def test_a_python_without_a_global_lock_is_another_version(monkeypatch, tmp_path):
     python = tmp_path / "python3.99t"
     python.write_text("#!/bin/sh\necho 3.99t\n")

@@ -2,6 +2,7 @@
 """The parts of scripts/ that could go wrong unnoticed."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -53,6 +54,8 @@ import steps
 import windows
 from shell import ROOT, CommandFailed, Unavailable, run
 
+ONLY_POSIX = pytest.mark.skipif(os.name == "nt", reason="Windows has no such programs, users or signals")
+
 
 @pytest.fixture
 def no_other_pythons(monkeypatch, tmp_path):
@@ -72,12 +75,14 @@ def fake_python(path: Path, version: str, code: int = 0) -> Path:
     return path
 
 
+@ONLY_POSIX
 def test_a_shim_that_fails_is_passed_over(no_other_pythons):
     fake_python(no_other_pythons / "bin" / "python3.99", "3.99", code=127)
     real = fake_python(no_other_pythons / "pyenv" / "versions" / "3.99.1" / "bin" / "python", "3.99")
     assert pythons.find("3.99") == (real, "3.99")
 
 
+@ONLY_POSIX
 def test_the_newest_patch_release_is_taken(no_other_pythons):
     for patch in ("3.99.9", "3.99.10", "3.99.2"):
         fake_python(no_other_pythons / "pyenv" / "versions" / patch / "bin" / "python", "3.99")
@@ -110,12 +115,14 @@ def test_rust_is_checked_with_the_features_of_the_wheel():
     assert options[options.index("--features") + 1 :] == tuple(maturin["features"])
 
 
+@ONLY_POSIX
 def test_without_root_there_is_no_window(monkeypatch, tmp_path):
     monkeypatch.setattr(windows.os, "geteuid", lambda: 1000)
     with pytest.raises(Unavailable, match="needs root"):
         windows.run_scripts(tmp_path / "authalic.zip", ["buttons"], tmp_path / "log")
 
 
+@ONLY_POSIX
 def test_a_debian_system_that_cannot_be_made_is_left_out(monkeypatch, tmp_path):
     def fail(command, *_):
         raise CommandFailed(command, 1, "cannot resolve the host")
@@ -283,6 +290,7 @@ def test_the_default_is_measured_beside_the_papers_methods(tiny_meshes, tmp_path
     assert all("×" in line for line in rows[2:])
 
 
+@ONLY_POSIX
 def test_the_comparison_has_rows_with_figures_or_with_the_reason(tiny_meshes, tmp_path):
     target = tmp_path / "peers.md"
     absent = [f"{package}=no wheel" for package in ("libigl", "xatlas", "lapy", "bpy")]
@@ -294,6 +302,7 @@ def test_the_comparison_has_rows_with_figures_or_with_the_reason(tiny_meshes, tm
         assert (tmp_path / picture).stat().st_size > 0, picture
 
 
+@ONLY_POSIX
 def test_the_comparison_survives_what_happens_to_a_method(monkeypatch, tmp_path):
     mesh, method = bench.meshes.icosphere(1), bench.peers.methods.named("authalic fixed_point", "sphere")
     start = bench.peers.run.Starter(tmp_path, 60, "", {})

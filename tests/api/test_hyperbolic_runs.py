@@ -120,7 +120,7 @@ def test_one_and_several_threads_and_another_call_give_the_same_bits(run_python)
 
 
 INTERRUPT = """
-import json, os, signal, threading, time
+import json, signal, threading, time
 from api import curves, meshes
 # a shell's background job inherits SIGINT ignored, and Python then installs no handler of its own
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -128,7 +128,7 @@ pair = curves.identical(meshes.bumpy_ball(6), curves.arcs(5))
 sent = []
 def interrupt():
     sent.append(time.perf_counter())
-    os.kill(os.getpid(), signal.SIGINT)
+    signal.raise_signal(signal.SIGINT)
 threading.Timer({delay}, interrupt).start()
 try:
     while True:  # a fast machine may be done before it is stopped

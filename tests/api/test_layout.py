@@ -577,7 +577,7 @@ def test_one_and_several_threads_give_the_same_bits(run_python):
 
 
 INTERRUPT = """
-import json, os, signal, threading, time, authalic
+import json, signal, threading, time, authalic
 from api import meshes
 # a shell's background job inherits SIGINT ignored, and Python then installs no handler of its own
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -606,7 +606,7 @@ print(json.dumps([outcome, time.perf_counter() - sent[0]]))
 @pytest.mark.parametrize("delay", [0.02, 0.15, 0.5])
 @pytest.mark.parametrize(
     ("stop", "progress", "outcome"),
-    [("os.kill(os.getpid(), signal.SIGINT)", None, "interrupted"), ("pass", "progress", "cancelled")],
+    [("signal.raise_signal(signal.SIGINT)", None, "interrupted"), ("pass", "progress", "cancelled")],
     ids=["Ctrl-C", "False"],
 )
 def test_a_run_on_a_hundred_thousand_faces_ends_at_once(run_python, delay, stop, progress, outcome):

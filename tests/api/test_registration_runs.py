@@ -151,7 +151,7 @@ def test_one_and_several_threads_give_the_same_bits(run_python):
 
 
 INTERRUPT = """
-import json, os, signal, threading, time, authalic
+import json, signal, threading, time, authalic
 import numpy as np
 from api import meshes, pairs
 from api.test_runs import bumpy_square
@@ -161,7 +161,7 @@ mesh = {mesh}
 sent = []
 def interrupt():
     sent.append(time.perf_counter())
-    os.kill(os.getpid(), signal.SIGINT)
+    signal.raise_signal(signal.SIGINT)
 marks = [len(mesh.vertices) // 2 + 200, len(mesh.vertices) // 3 + 7]
 threading.Timer({delay}, interrupt).start()
 try:

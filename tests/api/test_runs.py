@@ -282,7 +282,7 @@ def test_one_and_several_threads_give_the_same_bits(run_python):
 
 
 INTERRUPT = """
-import json, os, signal, threading, time, authalic
+import json, signal, threading, time, authalic
 from api import meshes
 from api.test_runs import bumpy_square
 # a shell's background job inherits SIGINT ignored, and Python then installs no handler of its own
@@ -291,7 +291,7 @@ mesh = {mesh}
 sent = []
 def interrupt():
     sent.append(time.perf_counter())
-    os.kill(os.getpid(), signal.SIGINT)
+    signal.raise_signal(signal.SIGINT)
 threading.Timer({delay}, interrupt).start()
 began = time.perf_counter()
 try:

@@ -292,7 +292,7 @@ def test_an_exception_of_the_progress_function_comes_through(error):
 
 
 INTERRUPTED = """
-import os, signal, threading, time, authalic
+import signal, threading, time, authalic
 from api import meshes
 mesh = meshes.bumpy_ball(6)
 began = []
@@ -300,7 +300,7 @@ began = []
 signal.signal(signal.SIGINT, signal.default_int_handler)
 def interrupt():
     began.append(time.perf_counter())
-    os.kill(os.getpid(), signal.SIGINT)
+    signal.raise_signal(signal.SIGINT)
 threading.Timer(0.5, interrupt).start()
 try:
     while True:  # a fast machine may be done before it is stopped

@@ -160,9 +160,9 @@ def test_disks_and_unwraps_are_batches_too(run, folder):
     assert run("batch", "disk", *words, "--boundary", "free", "--angle-weight", 0.1).record["done"] == 1
     assert run("batch", "unwrap", *words, "--output-format", "npz").record["done"] == 1
     assert [name for name in names(folder / "out") if "maps" in name] == [
-        *("maps/cap.ply.disk.obj", "maps/cap.ply.unwrap.npz"),
+        *("maps/cap.disk.obj", "maps/cap.unwrap.npz"),
     ]
-    assert read_mesh(folder / "out" / "maps" / "cap.ply.disk.obj").uv is not None
+    assert read_mesh(folder / "out" / "maps" / "cap.disk.obj").uv is not None
 
 
 @ONLY_POSIX

@@ -5,12 +5,13 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 from api import meshes, real_meshes
 
-import authalic
+import authalic.io
 from authalic.io import MeshData, read_mesh, read_values, write_mesh, write_values
 
 from .conftest import names, start
@@ -91,6 +92,28 @@ def test_gifti_says_what_a_map_is(run, folder):
         points = nibabel.load(f"{name}.surf.gii").darrays[0]
         assert dict(points.meta) == left | {"GeometricType": kind}
         assert np.array_equal(points.coordsys.xform, np.eye(4))
+
+
+@pytest.mark.parametrize(
+    ("surface", "format", "name", "areal"),
+    [
+        ("ball.obj", None, "ball.sphere.obj", "ball.sphere.areal.npy"),
+        ("BALL.OBJ", None, "BALL.sphere.OBJ", "BALL.sphere.areal.npy"),
+        ("a.b.ply", "obj", "a.b.sphere.obj", "a.b.sphere.areal.npy"),
+        ("lh.white", None, "lh.authalic.sphere", "lh.authalic.areal"),
+        ("lh.white", "gifti", "lh.white.sphere.surf.gii", "lh.white.sphere.areal.shape.gii"),
+        ("s.surf.gii.gz", None, "s.sphere.surf.gii.gz", "s.sphere.areal.shape.gii"),
+        ("s.surf.gii", "obj", "s.sphere.obj", "s.sphere.areal.npy"),
+        ("s.gii", None, "s.sphere.gii", "s.sphere.areal.shape.gii"),
+    ],
+)
+def test_maps_are_named_after_their_surfaces(surface, format, name, areal):
+    from authalic.runs.names import areal_output, map_output
+
+    output = map_output(Path("folder", surface), "sphere", format)
+    assert output == Path("folder", name)
+    written = format or authalic.io.mesh_format(surface).name
+    assert areal_output(output, written) == Path("folder", areal)
 
 
 def test_radius_and_options_reach_the_library(run, folder):

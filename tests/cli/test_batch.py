@@ -353,6 +353,18 @@ def test_batches_take_the_options_of_their_commands(name):
     assert own - of_batch <= {"--radius"} and len(own) > 8
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere names of files are text")
+def test_names_of_files_need_be_no_text(folder):
+    name = os.fsdecode(b"sub-\xff.obj")
+    write_mesh(folder / name, MeshData(*meshes.octahedron()))
+    words = [sys.executable, "-m", "authalic", "batch", "sphere", name, "--out", "out", "--workers", "1"]
+    done = subprocess.run(words, cwd=folder, capture_output=True, timeout=100)
+    assert done.returncode == 0, done.stderr
+    [row] = rows(folder / "out")
+    assert (row["subject"], row["outcome"]) == ("sub-\\udcff.obj", "done")
+    assert (folder / "out" / "maps" / os.fsdecode(b"sub-\xff.sphere.obj")).exists()
+
+
 def test_maps_of_a_batch_are_no_subjects(run, folder):
     """The batch's folder may lie among the surfaces."""
     write_subjects(folder / "study", 2)

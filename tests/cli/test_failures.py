@@ -198,6 +198,19 @@ assert not set(sys.modules) & set("{optional}".split()), set(sys.modules) & set(
     assert done.returncode == 0, done.stderr
 
 
+def test_a_narrow_encoding_is_no_error(folder):
+    """As pipes have it on Windows: without σ₁/σ₂."""
+    done = subprocess.run(
+        [sys.executable, "-m", "authalic", "sphere", "ball.obj"],
+        cwd=folder,
+        env={**os.environ, "PYTHONIOENCODING": "cp1252"},
+        capture_output=True,
+        timeout=60,
+    )
+    assert done.returncode == 0, done.stderr
+    assert b"\\u03c3\\u2081/\\u03c3\\u2082 mean" in done.stdout
+
+
 def test_the_library_is_loaded_when_it_is_used_first():
     code = """
 import sys, authalic

@@ -14,7 +14,7 @@ from ..io.errors import require
 from ..runs.record import Record
 from .errors import SchedulerError
 from .memory import in_words
-from .store import read_record, write_record
+from .store import in_unicode, read_record, write_record
 from .task import Task, failure, run_task
 
 PATIENCE = 120.0
@@ -98,7 +98,7 @@ class Schedule:
                 self._start(task, address)
 
     def _start(self, task: Task, address: str) -> None:
-        key = f"authalic-{task.subject}-{task.attempt}-{time.monotonic_ns()}"
+        key = f"authalic-{in_unicode(task.subject)}-{task.attempt}-{time.monotonic_ns()}"
         future = self._client.submit(run_task, task, key=key, workers=[address], pure=False)
         self._running[future] = task, address
         future.add_done_callback(self._ended.put)

@@ -88,6 +88,11 @@ def is_done(record: Record | None, fingerprint: str, output: str) -> bool:
     return Path(output).exists()
 
 
+def in_unicode(text: str) -> str:
+    """Text in which bytes of file names that are no text are spelled out."""
+    return text.encode("utf-8", "backslashreplace").decode()
+
+
 def write_table(folder: Path, records: Iterable[Record]) -> Path:
     """Writes a row for each record, in the order of the subjects."""
     arrow = require("pyarrow", "the table of figures", "batch")
@@ -103,7 +108,7 @@ def write_table(folder: Path, records: Iterable[Record]) -> Path:
 def _row(record: Record) -> dict[str, Any]:
     error = record.get("error", {})
     known = {name: record.get(name) for name, _ in _COLUMNS}
-    return known | {
+    row = known | {
         "options": json.dumps(record.get("options", {})),
         "repairs": json.dumps(record["repairs"]) if "repairs" in record else None,
         "error_kind": error.get("kind"),
@@ -111,6 +116,7 @@ def _row(record: Record) -> dict[str, Any]:
         "error_indices": json.dumps(error["indices"]) if "indices" in error else None,
         "error_count": error.get("count"),
     }
+    return {name: in_unicode(value) if isinstance(value, str) else value for name, value in row.items()}
 
 
 def _read(path: Path) -> Record | None:

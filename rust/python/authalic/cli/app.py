@@ -2,6 +2,7 @@
 """The commands together, and how each of them ends."""
 
 import contextlib
+import io
 import os
 import signal
 import sys
@@ -37,6 +38,10 @@ for group in (maps.COMMANDS, cutting.COMMANDS, registering.COMMANDS, meshes.COMM
 def run(arguments: Sequence[str]) -> int:
     """Runs a command; returns its exit code, whatever happens."""
     as_json = "--json" in arguments
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            # no name of a file and no σ is an error, whatever the encoding of the terminal or pipe
+            stream.reconfigure(errors="backslashreplace")
     try:
         # click's own main would end the process on a broken pipe
         with _termination_raises(), authalic.make_context("authalic", list(arguments)) as context:

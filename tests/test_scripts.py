@@ -147,7 +147,7 @@ def test_scripts_that_fail_in_a_window_are_run_once_more(monkeypatch, tmp_path):
         seen.append(list(names))
         return windows._by_script(runs[len(seen) - 1])
 
-    monkeypatch.setattr(windows, "_system", lambda log: tmp_path)
+    monkeypatch.setattr(windows, "debian", lambda suite, log: tmp_path)
     monkeypatch.setattr(windows, "_run_once", once)
     names = ["first", "second", "third", "lost"]
     assert windows.run_scripts(tmp_path / "authalic.zip", names, tmp_path / "log") == (4, 2)

@@ -58,6 +58,7 @@ if TYPE_CHECKING:
         authalic_landmark_curve_index: int
         authalic_curve_key: str
         authalic_registration: Registration
+        authalic_registered_by: str
         authalic_wrap: Wrap
         authalic_home: Any
         authalic_beside: Any

@@ -21,6 +21,10 @@ from typing import Any, NamedTuple, TypeGuard
 from ..surfaces.arrays import Path
 
 FORMAT, VERSION = "authalic-landmarks", 1
+# A file may come from a stranger. These are far beyond what people pair, and keep Blender alive.
+MOST_BYTES, MOST_PAIRS = 16_000_000, 10_000
+_MOST_VERTICES = 2**31  # of a mesh in Blender
+_LONGEST_NAME, _LONGEST_QUOTE = 200, 40
 _MOST_WEIGHT = 1e38  # single precision has no larger ones
 _NUMBERS = re.compile(r"\[\n[\d,\s]+\]")  # lists of numbers, which are to be one line
 
@@ -79,22 +83,40 @@ def write(path: FilePath, landmarks: Landmarks) -> None:
         beside.unlink(missing_ok=True)
 
 
+def read(path: FilePath) -> Landmarks:
+    """The landmarks in a file. Raises `CannotRead`, or `OSError` where it cannot be opened."""
+    with path.open("rb") as file:
+        # Not its size, which pipes and devices do not have.
+        data = file.read(MOST_BYTES + 1)
+    if len(data) > MOST_BYTES:
+        raise CannotRead(f"it has more than {MOST_BYTES // 1_000_000} MB, and so is no file of landmarks")
+    try:
+        return from_text(data.decode("utf-8-sig"))
+    except UnicodeDecodeError as problem:
+        raise CannotRead(f"it is not text in UTF-8 ({problem.reason} at byte {problem.start})") from None
+
+
 def from_text(text: str) -> Landmarks:
     """The landmarks in the text of a file. Raises `CannotRead`."""
     try:
         content = json.loads(text)
     except ValueError as problem:
         raise CannotRead(f"it is not JSON ({problem})") from None
+    except RecursionError:
+        raise CannotRead("it is nested too deeply") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise CannotRead(f'it holds no landmarks: there is no "format": "{FORMAT}"')
     if content.get("version") != VERSION or isinstance(content["version"], bool):
-        raise CannotRead(f"it is of version {content.get('version')}, and only {VERSION} is known")
+        raise CannotRead(f"it is of version {_quoted(content.get('version'))}, and only {VERSION} is known")
     listed = content.get("pairs")
     if not isinstance(listed, list):
         raise CannotRead('"pairs" is missing or not a list')
     curves = content.get("curves")
     if curves is not None and not isinstance(curves, list):
         raise CannotRead('"curves" is not a list')
+    for entries, what in ((listed, "pairs"), (curves or (), "curves")):
+        if len(entries) > MOST_PAIRS:
+            raise CannotRead(f"it has {len(entries)} {what}; {MOST_PAIRS} are the most that are read")
     return Landmarks(
         source=_name(content, "source"),
         target=_name(content, "target"),
@@ -110,27 +132,42 @@ def _entry(pair: Point) -> dict[str, Any]:
 
 
 def _name(content: dict[str, object], key: str) -> str:
-    value = content.get(key, "")
+    return _checked_name(content.get(key, ""), f'"{key}"', "the name of an object")
+
+
+def _checked_name(value: object, what: str, expected: str) -> str:
+    """A text that Blender can keep as a name."""
     if not isinstance(value, str):
-        raise CannotRead(f'"{key}" is {json.dumps(value)}, not the name of an object')
+        raise CannotRead(f"{what} is {_quoted(value)}, not {expected}")
+    if len(value) > _LONGEST_NAME:
+        raise CannotRead(f"{what} has {len(value)} characters; {_LONGEST_NAME} are the most that are read")
+    if any(character == "\0" or "\ud800" <= character <= "\udfff" for character in value):
+        raise CannotRead(f"{what} is {_quoted(value)}, which has characters that are no text")
     return value
+
+
+def _quoted(value: object) -> str:
+    """A value as the file has it, not too long for a message; of lists and objects only what they are."""
+    if isinstance(value, dict | list):
+        return "an object" if isinstance(value, dict) else "a list"
+    text = json.dumps(value)
+    return text if len(text) <= _LONGEST_QUOTE else f"{text[:_LONGEST_QUOTE]}…"
 
 
 def _point(item: object, number: int) -> Point:
     name, source, target = _pair(item, f"pair {number}", _vertex, number)
     weight = item.get("weight") if isinstance(item, dict) else None
     if weight is not None and not _is_weight(weight):
-        raise CannotRead(f"the weight of pair {number} is {json.dumps(weight)}, not a number above 0")
+        raise CannotRead(f"the weight of pair {number} is {_quoted(weight)}, not a number above 0")
     return Point(name, source, target, weight)
 
 
 def _pair(item: object, what: str, read: Callable[[object, str], object], number: int) -> Any:
     """(name, source, target) of one entry, of which `read` reads either end."""
     if not isinstance(item, dict):
-        raise CannotRead(f"{what} is {json.dumps(item)}, not an object with a name, a source and a target")
+        raise CannotRead(f"{what} is {_quoted(item)}, not an object with a name, a source and a target")
     name = item.get("name", f"{'Curve' if read is _path else 'Landmark'} {number}")
-    if not isinstance(name, str):
-        raise CannotRead(f"the name of {what} is {json.dumps(name)}, not a text")
+    name = _checked_name(name, f"the name of {what}", "a text")
     for side in ("source", "target"):
         if side not in item:
             raise CannotRead(f'{what} has no "{side}"')
@@ -139,21 +176,21 @@ def _pair(item: object, what: str, read: Callable[[object, str], object], number
 
 def _vertex(value: object, what: str) -> int:
     if not _is_vertex(value):
-        raise CannotRead(f"{what} is {json.dumps(value)}, not the number of a vertex")
+        raise CannotRead(f"{what} is {_quoted(value)}, not the number of a vertex")
     return value
 
 
 def _path(value: object, what: str) -> Path:
     if not isinstance(value, list):
-        raise CannotRead(f"{what} is {json.dumps(value)}, not a list of vertices")
+        raise CannotRead(f"{what} is {_quoted(value)}, not a list of vertices")
     bad = [item for item in value if not _is_vertex(item)]
     if bad:
-        raise CannotRead(f"{what} has {json.dumps(bad[0])}, not the number of a vertex")
+        raise CannotRead(f"{what} has {_quoted(bad[0])}, not the number of a vertex")
     return tuple(value)
 
 
 def _is_vertex(value: object) -> TypeGuard[int]:
-    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+    return isinstance(value, int) and not isinstance(value, bool) and 0 <= value < _MOST_VERTICES
 
 
 def _is_weight(value: object) -> bool:

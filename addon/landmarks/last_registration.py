@@ -27,8 +27,11 @@ _PROPERTIES: Any = bpy.types.Object
 def register() -> None:
     bpy.utils.register_class(AUTHALIC_PG_registration)
     _PROPERTIES.authalic_registration = PointerProperty(type=AUTHALIC_PG_registration, options={"HIDDEN"})
+    # All that version 0.1.0 kept: the method.
+    _PROPERTIES.authalic_registered_by = StringProperty(options={"HIDDEN"})
 
 
 def unregister() -> None:
+    del _PROPERTIES.authalic_registered_by
     del _PROPERTIES.authalic_registration
     bpy.utils.unregister_class(AUTHALIC_PG_registration)

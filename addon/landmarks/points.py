@@ -297,7 +297,7 @@ def _target_changed(source: MeshObject, _context: bpy.types.Context) -> None:
             _bind(landmark, "target", landmark.waiting)
     for curve in source.authalic_landmark_curves:
         curve.error = -1.0
-    source.authalic_registration.method = ""
+    source.authalic_registration.method = source.authalic_registered_by = ""
 
 
 _PROPERTIES: Any = bpy.types.Object

@@ -36,7 +36,7 @@ class _File(OperatorMixin):
     def execute(self, context: bpy.types.Context) -> Status:
         try:
             return self.run(active_source(context), self._path())
-        except (CannotPair, landmark_files.CannotRead, OSError, UnicodeDecodeError) as problem:
+        except (CannotPair, landmark_files.CannotRead, OSError, UnicodeError) as problem:
             name = Path(self.filepath).name
             text = problem.strerror if isinstance(problem, OSError) and problem.strerror else problem
             self.report({"ERROR"}, f"{name}: {text}" if name else str(text))
@@ -92,7 +92,7 @@ class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):  # t
         return poll.can_change_lists(cls, context)
 
     def run(self, source: MeshObject, path: FilePath) -> Status:
-        content = landmark_files.from_text(path.read_text(encoding="utf-8-sig"))
+        content = landmark_files.read(path)
         named: bpy.types.Object | None = bpy.data.objects.get(content.target)
         before = source.authalic_target
         if before is None and is_mesh(named) and named != source:

@@ -57,6 +57,8 @@ class AUTHALIC_OT_transfer(Modal, Registering, bpy.types.Operator):
         ),
         default="SURFACE",
     )
+    # What `offsets` was in version 0.1.0, for presets and scripts of that time.
+    align: BoolProperty(name="Align", default=False, options={"HIDDEN", "SKIP_SAVE"})
     smooth: EnumProperty(
         name="Smooth",
         description="Interpolate weights, colors and shape keys without the facets of the target",
@@ -78,10 +80,18 @@ class AUTHALIC_OT_transfer(Modal, Registering, bpy.types.Operator):
         return transfer.job(
             context,
             transfer.Settings(
-                **{name: getattr(self, name) for name in (*_KINDS, *_WAYS)},
+                **{name: getattr(self, name) for name in _KINDS},
+                offsets=self._offsets(),
+                smooth=self.smooth,
                 registration=self.registration() if is_set else None,
             ),
         )
+
+    def _offsets(self) -> str:
+        is_set = self.properties.is_property_set
+        if is_set("align") and not is_set("offsets"):
+            return "ALIGN" if self.align else "WORLD"
+        return str(self.offsets)
 
     def line(self, report: transfer.Report) -> str:
         return f"Transferred {report}"

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of a registration. Plain data, no bpy."""
 
+import math
 from dataclasses import dataclass, replace
+
+_METHODS, _DOMAINS, _ENERGIES = ("POINTS", "CURVES"), ("AUTO", "DISK", "SPHERE"), ("SURFACE", "AREA")
 
 
 @dataclass
@@ -26,6 +29,13 @@ class Settings:
     def is_pulled(self) -> bool:
         """Whether soft landmarks, features and positions count."""
         return self.energy == "SURFACE"
+
+    @property
+    def are_possible(self) -> bool:
+        """Whether the operators could have these settings."""
+        weights = (self.weight, self.angle_weight, self.feature_weight, self.position_weight)
+        named = self.method in _METHODS and self.domain in _DOMAINS and self.energy in _ENERGIES
+        return named and self.angle_weight <= 1 and all(0 <= weight < math.inf for weight in weights)
 
     @property
     def that_count(self) -> "Settings":

@@ -41,6 +41,7 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("tests/blender/test_*.py", {"ruff": (), "types": (), **dict.fromkeys(BLENDER, ("{file}",))}),
     ("tests/blender/*", _whole("ruff", "types", *BLENDER)),
     ("tests/data/*", {"python": ("tests/api",), **_whole(*BLENDER)}),
+    ("tests/compatibility/*", {"ruff": (), "python": STRUCTURE}),
     ("tests/gui/driver.py", _whole("ruff", "types", "window")),
     ("tests/gui/start.py", _whole("ruff", "types", "window")),
     ("tests/gui/*.py", {"ruff": (), "types": (), "window": ("{file}",)}),
@@ -55,6 +56,8 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("scripts/build", {"ruff": (), "python": PROJECT}),
     ("scripts/docs", {"ruff": (), "python": PROJECT}),
     ("scripts/demo", {"ruff": (), "python": PROJECT}),
+    ("scripts/compatibility", {"ruff": (), "python": PROJECT}),
+    ("scripts/lib/compatibility.py", {"ruff": (), "python": PROJECT}),
     ("scripts/release", {"ruff": (), "python": PROJECT}),
     ("scripts/lib/release/*", {"ruff": (), "python": PROJECT}),
     ("scripts/licenses.*", {"python": PROJECT}),
@@ -65,6 +68,9 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("scripts/requirements/surfaces.txt", _whole("python")),
     ("scripts/requirements/docs.txt", _whole("docs")),
     ("scripts/requirements/peer-*", {}),
+    ("scripts/requirements/numpy-*", {}),
+    ("scripts/requirements/bpy-4.5.txt", {}),
+    ("scripts/requirements/bpy-5.[13].txt", {}),
     # The manual, which the zip holds.
     (
         "docs/blender.md",

@@ -89,7 +89,9 @@ def pack_extension(target: Path, wheel: Path, blender: Environment, log: Path | 
     The same sources and the same wheel give the same bytes.
     """
     folder = OUT / "extension"
-    _lay_out_extension(folder, wheel)
+    _lay_out_extension(folder, wheel, ROOT, version())
+    _add_documents(folder)
+    _settle(folder)
     target.unlink(missing_ok=True)
     blender_ext(blender, "validate", folder, log=log)
     blender_ext(blender, "build", "--source-dir", folder, "--output-filepath", target, log=log)
@@ -102,6 +104,17 @@ def blender_ext(blender: Environment, *words: object, log: Path | None = None) -
     if not tools:
         raise Unavailable(f"the bpy package in {blender.folder} has no blender_ext.py")
     return run([blender.python, tools[0], *words], _UTC, log)
+
+
+def build_previous(source: Path, number: str, archive: Path, dev: Environment, blender: Environment) -> None:
+    """The extension zip of an earlier version, from the folder of its sources."""
+    python = [dev.python, "-m", "maturin", "build", "--release", "--locked", "--interpreter", dev.python]
+    manifest = source / "rust" / "python" / "Cargo.toml"
+    run([*python, "--manifest-path", manifest, "--out", source / "dist"], {"VIRTUAL_ENV": str(dev.folder)})
+    (wheel,) = (source / "dist").glob("*.whl")
+    folder = source / "extension"
+    _lay_out_extension(folder, wheel, source, number)
+    blender_ext(blender, "build", "--source-dir", folder, "--output-filepath", archive)
 
 
 def install_wheel(wheel: Path, target: Environment, log: Path | None = None) -> None:
@@ -146,21 +159,25 @@ def _keep_newest_wheel(folder: Path) -> Path | None:
     return wheels[-1] if wheels else None
 
 
-def _lay_out_extension(folder: Path, wheel: Path) -> None:
+def _lay_out_extension(folder: Path, wheel: Path, root: Path, number: str) -> None:
+    """The files of the extension's zip: those of addon/ below `root`, its manifest and the wheel."""
     shutil.rmtree(folder, ignore_errors=True)
     ignored = shutil.ignore_patterns("__pycache__", "*.in", "*.pyc")
-    shutil.copytree(ROOT / "addon", folder, ignore=ignored)
+    shutil.copytree(root / "addon", folder, ignore=ignored)
     (folder / "wheels").mkdir()
     shutil.copy(wheel, folder / "wheels")
-    shutil.copy(ROOT / THIRD_PARTY, folder)
-    template = (ROOT / "addon" / "blender_manifest.toml.in").read_text(encoding="utf-8")
+    template = (root / "addon" / "blender_manifest.toml.in").read_text(encoding="utf-8")
     platforms = json.dumps([platform_of(wheel) or platform()])
-    manifest = template.replace("@VERSION@", version()).replace("@PLATFORMS@", platforms)
+    manifest = template.replace("@VERSION@", number).replace("@PLATFORMS@", platforms)
     manifest = manifest.replace("@WHEELS@", json.dumps([f"./wheels/{wheel.name}"]))
     (folder / "blender_manifest.toml").write_text(manifest, encoding="utf-8")
+
+
+def _add_documents(folder: Path) -> None:
+    """The manual, and the licenses of what the wheel is made of."""
+    shutil.copy(ROOT / THIRD_PARTY, folder)
     text = (ROOT / "docs" / "blender.md").read_text(encoding="utf-8")
     (folder / "manual.html").write_text(manual.to_html(text), encoding="utf-8")
-    _settle(folder)
 
 
 def _settle(folder: Path) -> None:

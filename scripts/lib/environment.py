@@ -70,6 +70,19 @@ def blender_newest() -> Environment:
     return _ensure_blender("bpy-5", "bpy-5.0", *pythons.find("3.11"))
 
 
+def blender(version: str) -> Environment:
+    """Blender of a version such as "4.5" as a Python module."""
+    # Version 5.2 is the one that `blender_newest` takes.
+    name = "bpy-5" if version == "5.2" else f"bpy-{version}"
+    python = "3.11" if version < "5.1" else "3.13"
+    return _ensure_blender(name, f"bpy-{version}", *pythons.find(python))
+
+
+def package(python: str, requirements: str) -> Environment:
+    """The environment for the tests of the package with a version of Python, and the requirements' numpy."""
+    return _ensure(f"python-{python}-{requirements}", requirements, *pythons.find(python))
+
+
 def any_blender() -> Environment:
     """The newest Blender, or the oldest supported one if there is no other."""
     try:

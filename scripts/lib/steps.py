@@ -22,7 +22,8 @@ CARGO_OPTIONS = ("--locked", "--release", "--workspace", "--features", "metis")
 """The wheel's profile and features everywhere: the tests run real solves, and no crate is built twice."""
 _WORKFLOWS = ROOT / ".github" / "workflows"
 _DOCSTRINGS = "tests/test_docstrings.py"
-_PYTHON_TESTS = ("tests", "--ignore=tests/blender", "--ignore=tests/gui", f"--ignore={_DOCSTRINGS}")
+_NOT_OF_THE_PACKAGE = ("tests/blender", "tests/compatibility", "tests/gui", _DOCSTRINGS)
+_PYTHON_TESTS = ("tests", *(f"--ignore={place}" for place in _NOT_OF_THE_PACKAGE))
 _BLENDER_TESTS = ("tests/blender",)
 _SIDE_BY_SIDE = ("--numprocesses=2", "--dist=worksteal")
 """Small meshes keep one processor busy; more processes would only be in the way of large ones."""
@@ -152,13 +153,13 @@ def check_types(log: Path) -> Count:
 def check_docstrings(log: Path) -> Count:
     install_wheel(log)
     environment.add(environment.dev(), "docstrings")
-    return _pytest(environment.dev(), (_DOCSTRINGS,), {}, log)
+    return run_pytest(environment.dev(), (_DOCSTRINGS,), {}, log)
 
 
 def test_python(log: Path, places: tuple[str, ...] = _PYTHON_TESTS) -> Count:
     install_wheel(log)
     environment.add(environment.dev(), "surfaces", "--no-deps")
-    return _pytest(environment.dev(), places, {}, log, _SIDE_BY_SIDE)
+    return run_pytest(environment.dev(), places, {}, log, _SIDE_BY_SIDE)
 
 
 def build_documentation(log: Path) -> Count:
@@ -246,10 +247,10 @@ def _extension(blender: Environment, log: Path) -> Path:
 def _test_in_blender(blender: Environment, places: tuple[str, ...], log: Path) -> Count:
     archive = _extension(blender, log)
     variables = distribution.fresh_profile(archive, LOGS / f"profile-{blender.name}")
-    return _pytest(blender, places, variables, log)
+    return run_pytest(blender, places, variables, log)
 
 
-def _pytest(
+def run_pytest(
     where: Environment,
     places: tuple[str, ...],
     variables: dict[str, str],

@@ -44,7 +44,7 @@ def run_scripts(archive: Path, names: Sequence[str], log: Path) -> tuple[int, in
     on a busy machine an event may come too late. Raises Unavailable where there is no Debian system, or no
     window.
     """
-    system = _system(log)
+    system = debian(SUITE, log)
     lines = _run_once(system, archive, names, log)
     again = [name for name in names if not _is_passed(lines.get(name, []))]
     if again:
@@ -131,9 +131,9 @@ def _collect(work: Path, log: Path) -> list[str]:
     return text.splitlines()
 
 
-def _system(log: Path) -> Path:
-    """The folder of the Debian system, which is made on first use."""
-    folder = _CACHE / f"chroot-{SUITE}"
+def debian(suite: str, log: Path) -> Path:
+    """The folder of a Debian system with Blender and Python, which is made on first use."""
+    folder = _CACHE / f"chroot-{suite}"
     if not hasattr(os, "geteuid") or os.geteuid() != 0:
         raise Unavailable("a window needs root, for a Debian system of its own")
     if not shutil.which("apt-get"):
@@ -144,11 +144,11 @@ def _system(log: Path) -> Path:
     with open(str(_CACHE / f"{folder.name}.lock"), "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not (folder / "usr/bin/blender").exists():
-            _make_system(folder, log)
+            _make_system(folder, suite, log)
     return folder
 
 
-def _make_system(folder: Path, log: Path) -> None:
+def _make_system(folder: Path, suite: str, log: Path) -> None:
     say(f"making a Debian system with Blender in {folder} ...")
     shutil.rmtree(str(folder), ignore_errors=True)
     new = folder.with_suffix(".new")
@@ -160,11 +160,11 @@ def _make_system(folder: Path, log: Path) -> None:
             run(["apt-get", "-o", "DPkg::Lock::Timeout=300", "install", "-y", "-qq", "mmdebstrap"], env, log)
         options = [f"--aptopt={option}" for option in _APT_OPTIONS]
         command = ["mmdebstrap", "--variant=minbase", "--skip=check/empty", *options]
-        run([*command, f"--include={','.join(_PACKAGES)}", f"--keyring={_KEYRING}", SUITE, new], None, log)
+        run([*command, f"--include={','.join(_PACKAGES)}", f"--keyring={_KEYRING}", suite, new], None, log)
     except CommandFailed as failure:
         shutil.rmtree(str(new), ignore_errors=True)
         reason = tail(failure.output, 3)
-        raise Unavailable(f"Debian {SUITE} could not be installed into {folder}:\n{reason}") from failure
+        raise Unavailable(f"Debian {suite} could not be installed into {folder}:\n{reason}") from failure
     new.rename(folder)
 
 

@@ -2,11 +2,14 @@
 """Landmarks in .blend files and as JSON."""
 
 import json
+import os
 from pathlib import Path
+from typing import Any
 
 import bpy
 import pairing
 import pytest
+from installed import part
 from meshes import MeshObject
 
 
@@ -133,6 +136,55 @@ def test_a_bad_file_changes_nothing(
     with pytest.raises(RuntimeError):
         bpy.ops.authalic.landmark_import(filepath=str(path))
     assert heads[0].authalic_target is None
+
+
+PAIR = {"source": 1, "target": 2}
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("[" * 100_000, "nested too deeply"),
+        ('{"format": ' + "9" * 5000 + "}", "it is not JSON"),
+        ('{"format": NaN}', "holds no landmarks"),
+        ({**GOOD, "version": [1] * 1000, "pairs": []}, "of version a list"),
+        ({**GOOD, "pairs": [PAIR] * 10_001}, "10001 pairs; 10000 are the most"),
+        ({**GOOD, "pairs": [], "curves": [PAIR] * 10_001}, "10001 curves"),
+        ({**GOOD, "pairs": [{**PAIR, "source": 2**31}]}, "not the number of a vertex"),
+        ({**GOOD, "pairs": [{**PAIR, "source": 10**4000}]}, "0000…, not the number of a vertex"),
+        ({**GOOD, "pairs": [{**PAIR, "source": float("nan")}]}, "is NaN, not the number of a vertex"),
+        ({**GOOD, "pairs": [{**PAIR, "weight": float("nan")}]}, "is NaN, not a number above 0"),
+        ({**GOOD, "pairs": [{**PAIR, "weight": float("inf")}]}, "is Infinity, not a number above 0"),
+        ({**GOOD, "pairs": [{**PAIR, "name": "\ud800"}]}, "characters that are no text"),
+        ({**GOOD, "pairs": [{**PAIR, "name": "a\0b"}]}, "characters that are no text"),
+        ({**GOOD, "pairs": [{**PAIR, "name": "x" * 201}]}, "has 201 characters"),
+        ({**GOOD, "target": "\udfff", "pairs": []}, "characters that are no text"),
+        (
+            {**GOOD, "pairs": [], "curves": [{**PAIR, "source": [[]]}]},
+            "source of curve 1 has a list",
+        ),
+        (
+            {**GOOD, "pairs": [], "curves": [{"source": [1, 2], "target": [1, 2**40]}]},
+            "target of curve 1 has",
+        ),
+    ],
+)
+def test_a_hostile_file_changes_nothing(
+    heads: tuple[MeshObject, MeshObject], tmp_path: Path, content: Any, words: str
+) -> None:
+    pairing.add(20, 30)
+    path = tmp_path / "pairs.json"
+    path.write_text(content if isinstance(content, str) else json.dumps(content))
+    pairing.refused(words, bpy.ops.authalic.landmark_import, filepath=str(path))
+
+
+def test_a_huge_file_is_not_read(heads: tuple[MeshObject, MeshObject], tmp_path: Path) -> None:
+    pairing.add(20, 30)
+    path = tmp_path / "pairs.json"
+    path.write_bytes(b" " * (part("landmarks.files").MOST_BYTES + 1))
+    pairing.refused("more than 16 MB", bpy.ops.authalic.landmark_import, filepath=str(path))
+    if os.path.exists("/dev/zero"):  # which never ends
+        pairing.refused("more than 16 MB", bpy.ops.authalic.landmark_import, filepath="/dev/zero")
 
 
 def test_files_that_cannot_be_read_or_written(heads: tuple[MeshObject, MeshObject], tmp_path: Path) -> None:

@@ -103,6 +103,21 @@ impl Tree {
         self.integers(name)?.iter().map(|&index| not_negative(name, index)).collect()
     }
 
+    /// Indices below a limit, in one row.
+    pub(crate) fn indices_below(&self, name: &str, limit: usize) -> Result<Vec<usize>, Error> {
+        let indices = self.indices(name)?;
+        if indices.iter().any(|&index| index >= limit) {
+            return Err(misfit(name, "out of range"));
+        }
+        Ok(indices)
+    }
+
+    /// Real numbers in a table of so many rows.
+    pub(crate) fn table(&self, name: &str, n_rows: usize) -> Result<Array2<f64>, Error> {
+        let table: Array2<f64> = self.reals(name)?;
+        if table.nrows() == n_rows { Ok(table) } else { Err(misfit(name, "of another length")) }
+    }
+
     /// One count.
     ///
     /// # Errors
@@ -298,6 +313,9 @@ mod tests {
             (tree.real("table").unwrap_err(), "of another shape (table)"),
             (tree.real("faces").unwrap_err(), "no array of real numbers (faces)"),
             (tree.index_rows::<2>("faces").unwrap_err(), "of another shape (faces)"),
+            (tree.indices_below("count", 7).unwrap_err(), "missing (count)"),
+            (tree.tree("part").unwrap().indices_below("count", 7).unwrap_err(), "out of range (count)"),
+            (tree.table("table", 2).unwrap_err(), "of another length (table)"),
             (tree.text("part").map(str::to_owned).unwrap_err(), "no word (part)"),
         ] {
             assert!(error.to_string().contains(words), "{error}");

@@ -7,9 +7,11 @@ numbers as they are, arrays as the names of their entries, results within the re
 
 import json
 import os
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -20,6 +22,9 @@ FORMAT = 1
 """The format that is written. Formats from 1 up to this one are read."""
 
 _TABLE = "authalic"
+
+# What a file raises whose entries are not those that its table names, or are cut short.
+_DAMAGE = (AttributeError, KeyError, RecursionError, TypeError, ValueError, EOFError, BadZipFile, zlib.error)
 
 Arrays = dict[str, np.ndarray[Any, Any]]
 
@@ -47,7 +52,7 @@ def load(path: str | os.PathLike[str]) -> Any:
     Raises
     ------
     ValueError
-        The file holds no result, or one of a later version.
+        The file holds no result, a damaged one, or one of a later version.
 
     Examples
     --------
@@ -61,7 +66,10 @@ def load(path: str | os.PathLike[str]) -> Any:
     """
     with _opened(path) as entries:
         table = _table(entries, path)
-        return _made(table["content"], entries)
+        try:
+            return _made(table["content"], entries)
+        except _DAMAGE as problem:
+            raise ValueError(f"{os.fspath(path)} is damaged: {_words(problem)}") from problem
 
 
 def provenance_in(path: str | os.PathLike[str]) -> dict[str, Any] | None:
@@ -117,7 +125,7 @@ def _made(content: Any, entries: Mapping[str, Any]) -> Any:
 def _opened(path: str | os.PathLike[str]) -> Any:
     try:
         opened = np.load(path, allow_pickle=False)
-    except (ValueError, EOFError) as problem:
+    except (ValueError, EOFError, BadZipFile) as problem:
         raise ValueError(f"{os.fspath(path)} is no result of authalic: {problem}") from problem
     if not isinstance(opened, np.lib.npyio.NpzFile):
         raise ValueError(f"{os.fspath(path)} is no result of authalic: it holds one array")
@@ -127,13 +135,22 @@ def _opened(path: str | os.PathLike[str]) -> Any:
 def _table(entries: Mapping[str, Any], path: str | os.PathLike[str]) -> dict[str, Any]:
     if _TABLE not in entries:
         raise ValueError(f"{os.fspath(path)} is no result of authalic: save results by their method save")
-    table: dict[str, Any] = json.loads(str(entries[_TABLE]))
-    if table["format"] > FORMAT:
+    try:
+        table: dict[str, Any] = json.loads(str(entries[_TABLE]))
+        is_newer = int(table["format"]) > FORMAT
+        table["content"], table["version"]
+    except _DAMAGE as problem:
+        raise ValueError(f"{os.fspath(path)} is damaged: {_words(problem)}") from problem
+    if is_newer:
         raise ValueError(
             f"{os.fspath(path)} was saved by authalic {table['version']} in format {table['format']}, but "
             f"this version, {_native.__version__}, reads formats up to {FORMAT}: install a newer one"
         )
     return table
+
+
+def _words(problem: Exception) -> str:
+    return str(problem) or type(problem).__name__
 
 
 def _write(path: Path, arrays: Arrays) -> None:

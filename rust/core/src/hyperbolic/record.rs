@@ -9,6 +9,7 @@ use super::harmonic::certificates::Certificates;
 use super::harmonic::newton::Descent;
 use crate::error::Error;
 use crate::record::{Recorded, Tree, misfit};
+use crate::registration::Correspondence;
 
 impl Recorded for CurveMap {
     fn record(&self) -> Tree {
@@ -22,11 +23,13 @@ impl Recorded for CurveMap {
     }
 
     fn of_record(record: &Tree) -> Result<Self, Error> {
+        let correspondence: Correspondence = record.read("correspondence")?;
+        let curve_error: Array1<f64> = record.reals("curve_error")?;
         Ok(Self {
-            correspondence: record.read("correspondence")?,
             registered: record.reals("registered")?,
-            curve_error: record.reals("curve_error")?,
-            missed: record.indices("missed")?,
+            missed: record.indices_below("missed", curve_error.len())?,
+            correspondence,
+            curve_error,
             status: record.status()?,
             distortion: record.read("distortion")?,
         })
@@ -116,10 +119,12 @@ impl Recorded for CurveRegistration {
 
     fn of_record(record: &Tree) -> Result<Self, Error> {
         let descents = record.trees("descents")?.iter().map(Descent::of_record);
+        let (map, inverse): (CurveMap, CurveMap) = (record.read("map")?, record.read("inverse")?);
+        let [n, n_target] = [&map.correspondence, &inverse.correspondence].map(|side| side.positions().len());
         Ok(Self {
-            map: record.read("map")?,
-            inverse: record.read("inverse")?,
-            curves: [curves_of(record, "source_curves")?, curves_of(record, "target_curves")?],
+            curves: [curves_of(record, "source_curves", n)?, curves_of(record, "target_curves", n_target)?],
+            map,
+            inverse,
             spheres: [record.read("source_sphere")?, record.read("target_sphere")?],
             certificates: record.read("certificates")?,
             metrics: Vec::new(),
@@ -135,6 +140,6 @@ fn curves_record(curves: &[Vec<usize>]) -> Vec<Tree> {
     curves.iter().map(|curve| Tree::new().with("vertices", curve.as_slice())).collect()
 }
 
-fn curves_of(record: &Tree, name: &str) -> Result<Vec<Vec<usize>>, Error> {
-    record.trees(name)?.iter().map(|curve| curve.indices("vertices")).collect()
+fn curves_of(record: &Tree, name: &str, n_vertices: usize) -> Result<Vec<Vec<usize>>, Error> {
+    record.trees(name)?.iter().map(|curve| curve.indices_below("vertices", n_vertices)).collect()
 }

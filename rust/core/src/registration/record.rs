@@ -152,13 +152,17 @@ impl Recorded for Correspondence {
             return Err(misfit("triangles", "out of range"));
         }
         let location = |(triangle, barycentric)| Location { triangle: Face::new(triangle), barycentric };
+        let area_ratio: Array1<f64> = record.reals("area_ratio")?;
+        if area_ratio.len() != source.faces.len() {
+            return Err(misfit("area_ratio", "of another length"));
+        }
         Ok(Self {
-            source: Arc::new(source),
-            target: Arc::new(target),
             locations: triangles.into_iter().zip(barycentric).map(location).collect(),
             positions,
-            area_ratio: record.reals("area_ratio")?.to_vec(),
-            in_holes: record.indices("in_holes")?,
+            area_ratio: area_ratio.to_vec(),
+            in_holes: record.indices_below("in_holes", n_vertices)?,
+            source: Arc::new(source),
+            target: Arc::new(target),
         })
     }
 }
@@ -196,16 +200,27 @@ impl<Map: Recorded> Recorded for Registration<Map> {
             let read = |name: &str| record.read(name).map(Arc::new);
             record.has(name).then(|| read(name)).transpose()
         };
+        let correspondence: Correspondence = record.read("correspondence")?;
+        let [n, n_target] =
+            [&correspondence.source, &correspondence.target].map(|surface| surface.in_domain.len());
+        let landmark_error: Array1<f64> = record.reals("landmark_error")?;
+        let landmarks = [
+            record.indices_below("source_landmarks", n)?,
+            record.indices_below("target_landmarks", n_target)?,
+        ];
+        if landmarks.iter().any(|side| side.len() != landmark_error.len()) {
+            return Err(misfit("landmark_error", "of another length"));
+        }
         Ok(Self {
-            correspondence: record.read("correspondence")?,
-            registered: record.reals("registered")?,
-            target_registered: record.reals("target_registered")?,
+            registered: record.table("registered", n)?,
+            target_registered: record.table("target_registered", n_target)?,
             source_map: record.read("source_map")?,
             target_map: record.read("target_map")?,
-            landmarks: [record.indices("source_landmarks")?, record.indices("target_landmarks")?],
-            landmark_error: record.reals("landmark_error")?,
-            missed: record.indices("missed")?,
-            off_boundary: record.indices("off_boundary")?,
+            missed: record.indices_below("missed", landmark_error.len())?,
+            off_boundary: record.indices_below("off_boundary", n)?,
+            correspondence,
+            landmarks,
+            landmark_error,
             status: record.status()?,
             iterations: record.count("iterations")?,
             distortion: record.read("distortion")?,

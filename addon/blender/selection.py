@@ -119,8 +119,10 @@ def _corner_values(mesh: bpy.types.Mesh, name: str) -> Booleans:
 
 
 def _deselect_all(mesh: bpy.types.Mesh) -> None:
-    for elements in (mesh.polygons, mesh.edges, mesh.vertices):
-        elements.foreach_set("select", [False] * len(elements))
+    """Drops the attributes of the selection: Blender 5.0 crashes where edges of a script get new values."""
+    for name in (".select_vert", ".select_edge", ".select_poly"):
+        if name in mesh.attributes:
+            mesh.attributes.remove(mesh.attributes[name])
 
 
 def _select_edited_edges(mesh: bpy.types.Mesh, edges: Sequence[Edge]) -> None:

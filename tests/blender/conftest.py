@@ -43,8 +43,8 @@ def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    """Blender 4.2 may crash as the interpreter ends, long after the report is written."""
-    if bpy.app.version < (4, 5) and _STATUS in config.stash:
+    """Blender 4.2 may crash and Blender 4.5 hang as the interpreter ends, after the report is written."""
+    if bpy.app.version < (5, 0) and _STATUS in config.stash:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(config.stash[_STATUS])

@@ -81,7 +81,7 @@ def running(words, folder):
 
 @contextlib.contextmanager
 def cluster(folder, *options, count=2):
-    """A scheduler and workers, each in a process of its own, over TCP: the address and the workers."""
+    """A scheduler and workers, each in a process of its own, over TCP: address, workers, scheduler."""
     place = folder / "scheduler.json"
     words = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", place)
     with contextlib.ExitStack() as stack:
@@ -93,7 +93,7 @@ def cluster(folder, *options, count=2):
         if count:
             with distributed.Client(address, set_as_default=False) as client:
                 client.wait_for_workers(count, timeout=60)
-        yield address, workers
+        yield address, workers, scheduler
 
 
 def test_every_subject_gets_the_librarys_map_and_one_row(run, folder):
@@ -170,7 +170,7 @@ def test_a_worker_that_is_killed_costs_no_subject(folder):
     """A real scheduler and two workers over TCP; one of them is killed between two subjects or in one."""
     write_subjects(folder / "in", 14, level=5)
     out = folder / "out"
-    with cluster(folder, "--no-nanny") as (address, workers):
+    with cluster(folder, "--no-nanny") as (address, workers, _):
         command = [sys.executable, "-m", "authalic", "batch", "sphere", "in", "--out", "out"]
         batch = subprocess.Popen(
             [*command, "--scheduler", address], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE
@@ -185,6 +185,25 @@ def test_a_worker_that_is_killed_costs_no_subject(folder):
     for number in (0, 13):
         expected = authalic.sphere_map(*bumps(number, 5)).positions
         assert np.array_equal(read_mesh(out / "maps" / f"s{number:02}.sphere.off").vertices, expected)
+
+
+@ONLY_POSIX
+def test_a_batch_whose_scheduler_is_killed_says_so_and_goes_on_elsewhere(folder):
+    write_subjects(folder / "in", 8, 5)
+    command = [sys.executable, "-m", "authalic", "batch", "sphere", "in", "--out", "out"]
+    with cluster(folder) as (address, _, scheduler):
+        batch = subprocess.Popen([*command, "--scheduler", address], cwd=folder, stderr=subprocess.PIPE)
+        wait_for(lambda: n_records(folder / "out") > 0, batch)
+        scheduler.kill()
+        said = batch.communicate(timeout=120)[1].decode()
+    assert batch.returncode == 7 and "the connection to the scheduler was lost" in said
+    assert "Traceback" not in said and "distributed" not in said
+    done = subprocess.run(
+        [*command, "--workers", "1", "--json"], cwd=folder, capture_output=True, timeout=120
+    )
+    summary = json.loads(done.stdout)
+    assert summary["before"] > 0 and summary["before"] + summary["done"] == 8
+    assert [row["outcome"] for row in rows(folder / "out")] == ["done"] * 8
 
 
 def _worker(path):
@@ -217,7 +236,7 @@ def test_a_subject_that_kills_its_workers_is_reported_and_the_others_are_done(ru
     for name in ("killer", "shaky", "hopeless"):
         write_mesh(folder / "in" / f"{name}.off", MeshData(*bumps(9)))
     (folder / "trouble.py").write_text(TROUBLE)
-    with cluster(folder, "--preload", "trouble.py") as (address, _):
+    with cluster(folder, "--preload", "trouble.py") as (address, *_):
         words = ("in", "--out", "out", "--scheduler", address, "--retries", 1)
         result = run("batch", "sphere", *words)
     assert result.code == 8, result.err
@@ -303,7 +322,7 @@ def test_a_scheduler_that_is_not_there_is_an_error_of_its_own(run, folder, monke
 @ONLY_POSIX
 def test_a_scheduler_without_workers_is_an_error_of_its_own(run, folder, monkeypatch):
     monkeypatch.setattr(schedule, "PATIENCE", 0.5)
-    with cluster(folder, count=0) as (address, _):
+    with cluster(folder, count=0) as (address, *_):
         result = run("batch", "sphere", "ball.obj", "--out", "out", "--scheduler", address)
     assert result.code == 7 and "there was no worker" in result.err
 

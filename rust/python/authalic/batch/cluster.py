@@ -33,7 +33,8 @@ def connected(scheduler: str | None, workers: int | None, memory: int | None, la
     distributed.Client
         The client.
     """
-    with _quiet(logging.getLogger("distributed")), _client(scheduler, workers, memory, largest) as client:
+    require("distributed", "a batch", "batch")
+    with _quiet("distributed"), _client(scheduler, workers, memory, largest) as client:
         yield client
 
 
@@ -76,14 +77,17 @@ def _client(scheduler: str | None, workers: int | None, memory: int | None, larg
 
 
 @contextlib.contextmanager
-def _quiet(logger: logging.Logger) -> Iterator[None]:
-    """Workers that come and go are told by the batch itself."""
-    level = logger.level
-    logger.setLevel(logging.CRITICAL)
+def _quiet(package: str) -> Iterator[None]:
+    """Silences a package: workers and schedulers that come and go are told by the batch itself."""
+    names = [name for name in logging.root.manager.loggerDict if name.split(".")[0] == package]
+    levels = {name: logging.getLogger(name).level for name in names}
+    for name in names:
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         yield
     finally:
-        logger.setLevel(level)
+        for name, level in levels.items():
+            logging.getLogger(name).setLevel(level)
 
 
 def _shares(workers: int | None, memory: int | None, largest: int) -> tuple[int, int]:

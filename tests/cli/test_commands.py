@@ -276,6 +276,17 @@ def test_measure_takes_the_uvs_of_the_file_with_their_seams(run, folder):
     assert run("measure", "torus.obj", "ball.obj").code == 3
 
 
+@pytest.mark.parametrize("name", ["uv.obj", "uv.ply", "uv.glb", "uv.vtu", "uv.npz"])
+def test_measure_takes_uvs_of_any_format(name, run, folder):
+    """Some formats have vertices on seams several times, and some have single precision."""
+    run("unwrap", "torus.obj", name)
+    expected = run("unwrap", "torus.obj", "uv.obj", "--json").record
+    measured = run("measure", "torus.obj", name, "--json").record
+    assert measured["vertices"] == len(meshes.torus().vertices) and measured["folded"] == 0
+    assert measured["area_ratio_std"] == pytest.approx(expected["area_ratio_std"], rel=1e-3)
+    assert run("measure", "ball.obj", name).code == 3
+
+
 def test_info_says_what_suits(run, folder):
     assert run("info", "ball.obj", "--json").record["suits"] == ["sphere", "layout", "unwrap", "seams"]
     assert run("info", "cap.obj", "--json").record["suits"] == ["disk", "unwrap", "seams"]

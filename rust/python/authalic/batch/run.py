@@ -3,9 +3,9 @@
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from .._native import __version__
 from ..io import mesh_format
@@ -167,8 +167,7 @@ def run_batch(
     try:
         if missing:
             tracked = _Tracked(summary, records, progress)
-            cluster = scheduler, workers, memory, retries
-            _run(missing, cluster, threads, tracked, announce)
+            _run(missing, _Where(scheduler, workers, threads, memory), retries, tracked, announce)
     except BaseException:
         # workers may have written records that were not collected
         records |= read_records(folder)
@@ -206,22 +205,31 @@ class _Tracked:
             self._progress(ended / summary.subjects, f"{ended} of {summary.subjects} subjects{failed}")
 
 
+class _Where(NamedTuple):
+    """Arguments of `run_batch` that say where it runs."""
+
+    scheduler: str | None
+    workers: int | None
+    threads: int | None
+    memory: int | None
+
+
 def _run(
     tasks: list[Task],
-    cluster: tuple[str | None, int | None, int | None, int],
-    threads: int | None,
+    where: _Where,
+    retries: int,
     tracked: _Tracked,
     announce: Callable[[str], object] | None,
 ) -> None:
-    scheduler, workers, memory, retries = cluster
     largest = max(task.memory for task in tasks)
-    workers = None if workers is None else min(workers, len(tasks))
-    with connected(scheduler, workers, memory, largest) as client:
+    workers = None if where.workers is None else min(where.workers, len(tasks))
+    with connected(where.scheduler, workers, where.memory, largest) as client:
         if announce is not None:
             announce(client.dashboard_link)
-        if threads is None and scheduler is None:
+        threads = where.threads
+        if threads is None and where.scheduler is None:
             threads = native_threads(len(client.scheduler_info(n_workers=-1)["workers"]))
-        tasks = [Task(**{**asdict(task), "threads": threads}) for task in tasks]
+        tasks = [replace(task, threads=threads) for task in tasks]
         Schedule(client, tasks, retries, tracked).run()
 
 

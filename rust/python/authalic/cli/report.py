@@ -34,9 +34,9 @@ _BY_KIND = {"invalid_option": Exit.USAGE, "subjects": Exit.USAGE, "scheduler": E
 _FIGURES = (
     ("islands", "islands {}"),
     ("area_ratio_std", "area ratio SD {:.4g}"),
-    ("shear", "shear mean {:.4g}"),
     ("angle_distortion_mean", "σ₁/σ₂ mean {:.4g}"),
     ("angle_distortion_p99", "99 % below {:.4g}"),
+    ("shear", "mean by area {:.4g}"),
     ("strain_mean", "strain mean {:.4g}"),
     ("folded", "folded faces {}"),
 )

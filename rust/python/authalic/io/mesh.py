@@ -75,6 +75,17 @@ class MeshData:
         return MeshData(self.vertices[pairs[:, 0]], faces, self.uv[pairs[:, 1]], faces, self.metadata)
 
 
+_UV_COLUMNS = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"), ("texture_s", "texture_t"))
+
+
+def uv_of_columns(columns: Mapping[str, Any]) -> Reals | None:
+    """UVs among the columns of vertices, by the names that they mostly have."""
+    for first, second in _UV_COLUMNS:
+        if first in columns and second in columns:
+            return np.column_stack([columns[first], columns[second]]).astype(np.float64)
+    return None
+
+
 def fans(polygons: list[list[int]]) -> Indices:
     """The triangles of polygons, in their order, each a fan around its first corner."""
     triangles = [(p[0], p[k], p[k + 1]) for p in polygons for k in range(1, len(p) - 1)]

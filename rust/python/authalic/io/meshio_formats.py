@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 
 from .errors import require
-from .mesh import Indices, MeshData, Reals, fans
+from .mesh import Indices, MeshData, fans, uv_of_columns
 
 _POLYGONS = ("triangle", "quad", "polygon")
-_UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"), ("texture_s", "texture_t"))
 
 
 def read_mesh(path: Path, name: str) -> MeshData:
@@ -21,7 +20,9 @@ def read_mesh(path: Path, name: str) -> MeshData:
     if points.shape[1] == 2:
         points = np.column_stack([points, np.zeros(len(points))])
     faces = [_triangles(block) for block in found.cells if block.type.startswith(_POLYGONS)]
-    return MeshData(points, np.vstack(faces) if faces else np.empty((0, 3), int), _uv(found.point_data))
+    return MeshData(
+        points, np.vstack(faces) if faces else np.empty((0, 3), int), uv_of_columns(found.point_data)
+    )
 
 
 def write_mesh(path: Path, mesh: MeshData, name: str) -> None:
@@ -40,10 +41,3 @@ def _triangles(block: Any) -> Indices:
     if block.type == "triangle":
         return np.asarray(block.data, np.int64)
     return fans(np.asarray(block.data).tolist())
-
-
-def _uv(columns: dict[str, Any]) -> Reals | None:
-    for first, second in _UV_NAMES:
-        if first in columns and second in columns:
-            return np.column_stack([columns[first], columns[second]]).astype(np.float64)
-    return None

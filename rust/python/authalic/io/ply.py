@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .mesh import Indices, MeshData, Reals, fans
+from .mesh import Indices, MeshData, Reals, fans, uv_of_columns
 
 _TYPES = {
     **{"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4"},
@@ -20,7 +20,6 @@ _TYPES = {
 }
 _STRUCT = {"i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "f4": "f", "f8": "d"}
 _ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">", "ascii": ""}
-_UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"), ("texture_s", "texture_t"))
 _CORNERS = ("vertex_indices", "vertex_index")
 
 
@@ -173,9 +172,9 @@ def _triangles(corners: Any) -> Indices:
 
 def _uv(vertex: dict[str, Any], texcoord: Any, faces: Indices) -> tuple[Reals | None, Indices | None]:
     """Points at vertices, or six numbers for each triangle."""
-    for first, second in _UV_NAMES:
-        if first in vertex and second in vertex:
-            return np.column_stack([vertex[first], vertex[second]]).astype(np.float64), None
+    uv = uv_of_columns(vertex)
+    if uv is not None:
+        return uv, None
     if texcoord is None or len(texcoord) != len(faces) or any(len(row) != 6 for row in texcoord):
         return None, None
     points = np.asarray(texcoord, np.float64).reshape(-1, 2)

@@ -10,6 +10,9 @@ from ..io import FileError, MeshData, Outputs, mesh_format, read_mesh
 from .areal import ArealFile
 from .record import Record, distortion_figures, problem, read_input
 
+_SINGLE_PRECISION = 1e-6
+"""Of the size of a surface: how far its vertices may lie apart in files of single precision."""
+
 
 def measure_run(
     source: Path,
@@ -27,7 +30,7 @@ def measure_run(
         The surface.
     image : Path, optional
         A mesh with the same faces, whose vertices are the images: a sphere around the origin, or a plane at z
-        = 0, or a mesh whose UVs are the map. Default: the UVs of the surface's own file.
+        = 0; or the surface with UVs that are the map. Default: the UVs of the surface's own file.
     areal : Path, optional
         The file for log₂ of each vertex's areal distortion.
     input_format, image_format : str, optional
@@ -85,11 +88,7 @@ def _map(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The surface, cut where its UVs are, with the points of the map."""
     given = mesh if image is None else read_mesh(image, format)
-    if given.uv is not None and given.uv_faces is not None and (image is None or len(given.uv)):
-        if not np.array_equal(given.faces, mesh.faces):
-            raise FileError(
-                image or source, "the map's faces are not those of the surface, in the same order"
-            )
+    if given.uv is not None and given.uv_faces is not None and _is_map_of(given, mesh):
         cut = MeshData(mesh.vertices, mesh.faces, given.uv, given.uv_faces).split_at_seams()
         assert cut.uv is not None
         return cut.vertices, cut.faces, cut.uv
@@ -99,6 +98,17 @@ def _map(
         raise FileError(image, "the map's faces are not those of the surface, in the same order")
     flat = given.vertices[:, :2] if not given.vertices[:, 2].any() else given.vertices
     return mesh.vertices, mesh.faces, np.ascontiguousarray(flat)
+
+
+def _is_map_of(given: MeshData, mesh: MeshData) -> bool:
+    """Whether a file with UVs has the surface's faces. It may have vertices on seams several times."""
+    if np.array_equal(given.faces, mesh.faces):
+        return True
+    has_corners = all(each.faces.max() < len(each.vertices) for each in (given, mesh))
+    if given.faces.shape != mesh.faces.shape or not has_corners:
+        return False
+    corners, expected = given.vertices[given.faces], mesh.vertices[mesh.faces]
+    return np.allclose(corners, expected, rtol=0, atol=_SINGLE_PRECISION * np.ptp(expected))
 
 
 def _suited(surface: Surface) -> list[str]:

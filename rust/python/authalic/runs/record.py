@@ -23,7 +23,7 @@ def read_input(
         "input": str(path),
         "input_sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
         "authalic": __version__,
-        "options": {key: value for key, value in options.items() if value is not None},
+        "options": given(options),
         "vertices": len(mesh.vertices),
         "faces": len(mesh.faces),
     }

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from .._native import seams, unwrap
+from .._native import distortion, seams, unwrap
 from ..io import FileError, MeshData, Outputs, mesh_format
 from ..io.files import save_mesh
 from ..io.obj import append_lines
 from .disk import save_flat
-from .record import Progress, Record, given, read_input
+from .record import Progress, Record, distortion_figures, given, read_input
 
 SEAM_FORMATS = ("csv", "npz", "obj")
 
@@ -26,7 +26,10 @@ def unwrap_run(
     options: Mapping[str, Any] | None = None,
     progress: Progress = None,
 ) -> Record:
-    """Unwraps a surface; `options` are arguments of `authalic.unwrap`, else as `disk_run`."""
+    """Unwraps a surface; `options` are arguments of `authalic.unwrap`, else as `disk_run`.
+
+    The figures are those of all other maps, over faces, and `shear` and `shear_p99` are weighted by area.
+    """
     options = given(options or {})
     format = mesh_format(target, output_format)
     outputs = Outputs()
@@ -35,9 +38,10 @@ def unwrap_run(
     found = unwrap((mesh.vertices, mesh.faces), **options, progress=progress)
     record |= {
         **{"status": found.status, "islands": found.islands, "seam_length": found.length},
-        **{"shear": found.shear, "shear_p99": found.shear_p99, "area_ratio_std": found.area_ratio_std},
+        **{"shear": found.shear, "shear_p99": found.shear_p99},
         **{"packed": found.packed, "seconds": found.seconds},
     }
+    record |= distortion_figures(distortion(mesh.vertices[found.vertex_of], found.faces, found.uv))
     with outputs:
         result = MeshData(mesh.vertices, mesh.faces, found.uv, found.faces, mesh.metadata)
         save_flat(place, result, format, record)

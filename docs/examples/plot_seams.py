@@ -33,8 +33,7 @@ for row, (name, (vertices, faces)) in zip(panels, bodies.items(), strict=True):
             edges=False,
         )
         pair[0].set_title(f"{name}, target={target}\nseams {result.length:.2f} √area")
-        pair[1].set_title(
-            f"mean σ₁/σ₂ {result.shear:.2f}, SD {result.area_ratio_std:.4f}\n{result.islands} island(s)"
-        )
+        islands = "1 island" if result.islands == 1 else f"{result.islands} islands"
+        pair[1].set_title(f"mean σ₁/σ₂ {result.shear:.2f}, SD {result.area_ratio_std:.4f}\n{islands}")
 figure.colorbar(shown, ax=panels, label="σ₁/σ₂", shrink=0.5)
 plt.show()

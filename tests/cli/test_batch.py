@@ -29,6 +29,7 @@ from authalic.batch import (  # noqa: E402
     schedule,
 )
 from authalic.batch import memory as memory_of_subjects  # noqa: E402
+from authalic.batch.options import check_options  # noqa: E402
 from authalic.batch.task import Task, run_task  # noqa: E402
 
 ONLY_POSIX = pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
@@ -287,6 +288,36 @@ def test_a_subject_too_large_for_every_worker_is_refused(run, folder, monkeypatc
     assert {row["subject"]: row["error_kind"] for row in rows(folder / "out")} == {
         **{"s00.off": None, "s01.off": "memory"},
     }
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        ("sphere", ("--angle-weight", "-1")),
+        ("disk", ("--boundary", "rectangle", "--aspect", "-2")),
+        ("unwrap", ("--target", "0.5")),
+    ],
+)
+def test_options_that_are_wrong_for_all_are_refused_before_work_starts(command, words, run, folder):
+    result = run("batch", command, "ball.obj", "cap.obj", "--out", "out", *words)
+    assert result.code == 2 and words[-2].strip("-").replace("-", "_") in result.err
+    assert not (folder / "out").exists()
+    with pytest.raises(TypeError, match="nonsense"):
+        run_batch(find_subjects([folder / "ball.obj"]), folder / "out", command, options={"nonsense": 1})
+
+
+@pytest.mark.parametrize(
+    ("command", "options"),
+    [
+        ("sphere", {"method": "fixed_point"}),
+        ("sphere", {"fill_holes": True, "repair": True, "area_tolerance": 0.01}),
+        ("disk", {"boundary": "rectangle", "aspect": 2.0}),
+        ("disk", {"boundary": "free", "overlap": True, "angle_weight": 0.1}),
+        ("unwrap", {"target": 1.25, "pack": False, "max_islands": 1}),
+    ],
+)
+def test_good_options_are_not_refused(command, options):
+    check_options(command, options)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the peak is read from /proc")

@@ -16,10 +16,11 @@ from ..runs.record import Record, given
 from .cluster import connected, native_threads
 from .errors import SubjectsError
 from .memory import estimate
+from .options import check_options
 from .schedule import Schedule
 from .store import is_done, make_folder, map_place, read_records, remove_record, write_table
 from .subjects import Subject
-from .task import RUNS, Task
+from .task import Task
 
 OUTPUT_FORMATS = {"sphere": None, "disk": "obj", "unwrap": "obj"}
 """What maps are written as; None: as the surface."""
@@ -133,6 +134,8 @@ def run_batch(
     ------
     SubjectsError
         If two subjects would write the same file.
+    ValueError, TypeError
+        If an option is wrong for every subject.
     SchedulerError
         If the scheduler cannot be reached, or has no workers for two minutes. What is done stays.
     MissingExtra
@@ -153,6 +156,7 @@ def run_batch(
     require("distributed", "a batch", "batch")
     require("pyarrow.parquet", "the table of figures", "batch")
     folder = Path(folder).resolve()
+    check_options(command, given(options or {}))
     tasks = _tasks(subjects, folder, command, given(options or {}), input_format, output_format, areal)
     # 2. What is done
     make_folder(folder)
@@ -242,8 +246,6 @@ def _tasks(
     output_format: str | None,
     areal: bool,
 ) -> list[Task]:
-    if command not in RUNS:
-        raise ValueError(f"command must be one of {sorted(RUNS)}, but is {command}")
     if areal and command == "unwrap":
         raise ValueError("areal is not for unwrap: vertices on seams have no single areal distortion")
     tasks = []

@@ -12,7 +12,7 @@ import click
 from . import options
 from .frame import Frame
 from .options import Command
-from .report import Exit
+from .report import Exit, in_command_words
 
 if TYPE_CHECKING:
     from ..batch import Summary
@@ -144,7 +144,8 @@ def _show(summary: "Summary", frame: Frame) -> None:
         return
     for record in summary.failed[:_SHOWN]:
         error = record["error"]
-        print(f"authalic: failed: {record['subject']}: {error['kind']}: {error['message']}", file=sys.stderr)
+        message = in_command_words(error["message"])
+        print(f"authalic: failed: {record['subject']}: {error['kind']}: {message}", file=sys.stderr)
     if len(summary.failed) > _SHOWN:
         print(f"authalic: failed: {len(summary.failed) - _SHOWN} more, see the table", file=sys.stderr)
     if not frame.quiet:

@@ -217,6 +217,7 @@ import sys, authalic
 assert "numpy" not in sys.modules and "sphere_map" in dir(authalic)
 authalic.sphere_map
 assert "numpy" in sys.modules and authalic.sphere_map is authalic._native.sphere_map
+assert set(authalic.__all__) <= set(vars(authalic))
 try:
     authalic.nothing
 except AttributeError as error:

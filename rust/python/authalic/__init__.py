@@ -110,9 +110,9 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from . import _files, _native, _warnings
 
-    homes = {"load": _files, "RegistrationWarning": _warnings}
-    value = globals()[name] = getattr(homes.get(name, _native), name)
-    return value
+    found = vars(_native) | {"load": _files.load, "RegistrationWarning": _warnings.RegistrationWarning}
+    globals().update({public: found[public] for public in __all__})
+    return globals()[name]
 
 
 def __dir__() -> list[str]:

@@ -350,6 +350,20 @@ def test_seams_and_registrations_go_through_pipes(folder):
     assert piped(folder, words, b"").stdout.startswith(b"OFF\n258 512")
 
 
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such pipes")
+def test_pipes_with_names_are_read_once(folder):
+    """As `authalic info <(zcat ball.obj.gz)` in a shell."""
+    os.mkfifo(folder / "pipe")
+    command = [sys.executable, "-m", "authalic", "info", "pipe", "--json"]
+    assert subprocess.run(command, cwd=folder, capture_output=True, timeout=60).returncode == 2
+    with subprocess.Popen([*command, "--input-format", "obj"], cwd=folder, stdout=subprocess.PIPE) as process:
+        (folder / "pipe").write_bytes((folder / "ball.obj").read_bytes())
+        record = json.loads(process.communicate(timeout=60)[0])
+    assert (record["vertices"], record["faces"]) == (258, 512)
+    with pytest.raises(authalic.io.FileError, match="cannot be read twice"):
+        read_mesh(folder / "pipe", "obj")
+
+
 def test_a_stream_needs_the_name_of_its_format(run):
     assert run("sphere", "-", "out.obj").code == 2
     assert run("sphere", "ball.obj", "-").code == 2

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from api import meshes
 
+import authalic
 from authalic.io import MeshData, write_mesh, write_values
 
 from .conftest import names, start
@@ -99,6 +100,17 @@ def test_a_folder_that_cannot_be_written_to_is_an_error(run, folder, monkeypatch
     monkeypatch.setattr("os.access", lambda place, mode: mode != os.W_OK)
     result = run("sphere", "ball.obj", "out.obj")
     assert result.code == 3 and "cannot be written to" in result.err
+
+
+@ONLY_POSIX
+def test_devices_and_pipes_are_not_replaced(run, folder):
+    os.mkfifo(folder / "pipe")
+    for place in ("pipe", os.path.relpath(os.devnull, folder)):
+        result = run("sphere", "ball.obj", place, "--output-format", "obj")
+        assert result.code == 3 and "a device or a pipe" in result.err
+    with pytest.raises(ValueError, match="a device or a pipe"):
+        authalic.disk_map(*meshes.bumpy_cap()).save(folder / "pipe")
+    assert not os.path.isfile(folder / "pipe") and not os.path.isfile(os.devnull)
 
 
 def test_errors_name_what_the_command_calls_things(run, folder):

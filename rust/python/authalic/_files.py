@@ -155,6 +155,8 @@ def _words(problem: Exception) -> str:
 
 def _write(path: Path, arrays: Arrays) -> None:
     """Writes beside the place and moves there, so that there is no half file at any time."""
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise ValueError(f"{path} is a device or a pipe, which no file can replace; choose another name")
     temporary = path.with_name(f".{path.name}.{os.urandom(4).hex()}")
     try:
         with temporary.open("xb") as file:

@@ -56,8 +56,8 @@ class Frame(NamedTuple):
 
     def show(self, record: dict[str, Any], source: Path, output: Path | None = None) -> None:
         """The record on stdout, or on stderr if the mesh went to stdout."""
-        streams = {"input": source, "output": output}
-        record = record | {key: "-" for key, path in streams.items() if path == STREAM}
+        named = {"input": source, "output": output}  # not the copies of streams
+        record = record | {key: str(path) for key, path in named.items() if path is not None}
         stream = sys.stderr if output == STREAM else sys.stdout
         if self.as_json or not self.quiet:
             show_record(record, self.as_json, stream)
@@ -67,14 +67,15 @@ class Frame(NamedTuple):
 
 @contextlib.contextmanager
 def read_file(path: Path, format: str | None) -> Iterator[Path]:
-    """The file to read: a copy of stdin if that is meant."""
-    if path != STREAM:
+    """The file to read: a copy of what cannot be read twice, stdin or a pipe with a name."""
+    if path != STREAM and path.is_file():
         yield path
         return
     if format is None:
-        raise click.UsageError("name the format of stdin with --input-format")
+        name = "stdin" if path == STREAM else f"the pipe {path}"
+        raise click.UsageError(f"name the format of {name} with --input-format")
     with _scratch() as folder:
-        (folder / "stdin").write_bytes(sys.stdin.buffer.read())
+        (folder / "stdin").write_bytes(sys.stdin.buffer.read() if path == STREAM else path.read_bytes())
         yield folder / "stdin"
 
 

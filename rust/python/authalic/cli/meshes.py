@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from . import options
-from .frame import STREAM, Frame, read_file
+from .frame import Frame, read_file
 from .report import show_info
 
 
@@ -27,7 +27,7 @@ def info(surface: Path, input_format: str | None, as_json: bool) -> None:
 
     with read_file(surface, input_format) as source:
         record = info_run(source, input_format=input_format)
-    show_info(record | ({"input": "-"} if surface == STREAM else {}), as_json, sys.stdout)
+    show_info(record | {"input": str(surface)}, as_json, sys.stdout)
 
 
 @click.command()

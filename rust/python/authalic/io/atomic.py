@@ -52,7 +52,7 @@ class Outputs:
         FileNotFoundError, PermissionError, IsADirectoryError
             If there is no such folder, if it cannot be written to, or if the file itself is a folder.
         FileError
-            If it was added before.
+            If it was added before, or is a device.
 
         Examples
         --------
@@ -71,6 +71,10 @@ class Outputs:
             raise PermissionError(f"the folder {target.parent} cannot be written to; choose another one")
         if target.is_dir():
             raise IsADirectoryError(f"{target} is a folder, not a file; choose another name")
+        if target.exists() and not target.is_file():
+            raise FileError(
+                path, "it is a device or a pipe, which a file cannot replace; choose another name"
+            )
         if target in self._places.values():
             raise FileError(path, "two results would be written to this file; give them different names")
         temporary = target.parent / f"{PREFIX}{os.getpid()}-{os.urandom(4).hex()}-{target.name}"

@@ -161,6 +161,10 @@ def save_values(path: Path, values: Reals, format: Format) -> None:
 def _reading(path: str | Path, format: Format, function: str) -> Any:
     """What a format's function returns, with every fault of the file as FileError."""
     module = importlib.import_module(f".{format.module}", __package__)
+    if Path(path).exists() and not (Path(path).is_file() or Path(path).is_dir()):
+        raise FileError(
+            path, "it is a device or a pipe, which cannot be read twice; copy it into a file first"
+        )
     with open(path, "rb") as file:
         if not file.read(1):
             raise FileError(path, "the file is empty")

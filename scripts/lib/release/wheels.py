@@ -49,6 +49,7 @@ def _build(platform: Platform, free_threaded: bool, folder: Path, log: Path | No
     command += ["--compression-level", "9"]
     command += ["--manifest-path", source / "rust/python/Cargo.toml", "--out", places.WORK / "new"]
     shutil.rmtree(places.WORK / "new", ignore_errors=True)
+    run(["cargo", "fetch", "--locked", "--manifest-path", source / "Cargo.toml"], log=log)
     run([*command, *platform.options], {**_variables(dev, source), **platform.variables}, log)
     shutil.rmtree(source.parent)  # half a gigabyte of objects
     [wheel] = (places.WORK / "new").glob("*.whl")
@@ -60,7 +61,10 @@ def _variables(dev: environment.Environment, source: Path) -> dict[str, str]:
     """The environment of a build: no git, no clock, and no path of this machine in what is built."""
     renamed = _renamed_paths(source)
     c_flags = " ".join(f"-ffile-prefix-map={path}={name}" for path, name in renamed)
+    flags = [f"--remap-path-prefix={path}={name}" for path, name in renamed]
     is_windows = os.name == "nt"
+    if is_windows:
+        flags.append("-Clink-arg=/Brepro")  # a hash in the place of the time
     path = [str(dev.python.parent), os.environ.get("PATH", "")]
     return {
         "VIRTUAL_ENV": str(dev.folder),
@@ -69,9 +73,7 @@ def _variables(dev: environment.Environment, source: Path) -> dict[str, str]:
         "SOURCE_DATE_EPOCH": changelog.source_date_epoch(),
         "CARGO_TARGET_DIR": str(source / "target"),
         "CARGO_INCREMENTAL": "0",
-        "CARGO_ENCODED_RUSTFLAGS": "\x1f".join(
-            f"--remap-path-prefix={path}={name}" for path, name in renamed
-        ),
+        "CARGO_ENCODED_RUSTFLAGS": "\x1f".join(flags),
         **({} if is_windows else {"CFLAGS": c_flags}),
     }
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import shutil
 import zipfile
@@ -11,10 +12,12 @@ from pathlib import Path
 
 import distribution
 import environment
-from release import inspection, places
+from release import places
 from release.problems import refuse_any
-from shell import version
+from shell import ROOT, run, version
 
+LIMIT = 4_000_000
+"""Bytes of a zip, at most."""
 _NEEDED = ("__init__.py", "LICENSE", "blender_manifest.toml", "manual.html", distribution.THIRD_PARTY)
 
 
@@ -22,15 +25,30 @@ def pack(log: Path | None = None) -> list[Path]:
     """The zips in dist/release/extensions/, of all wheels for which there is a Blender."""
     blender = environment.any_blender()
     places.REPOSITORY.mkdir(parents=True, exist_ok=True)
+    places.WORK.mkdir(parents=True, exist_ok=True)
     for old in places.REPOSITORY.iterdir():
         old.unlink()
     for wheel in places.wheels():
         name = distribution.platform_of(wheel)
         if name is not None and "-abi3-" in wheel.name:
             target = places.REPOSITORY / f"authalic-{version()}-{name}.zip"
-            distribution.pack_extension(target, wheel, blender, log)
+            packed = places.WORK / target.name
+            distribution.pack_extension(packed, recompressed(wheel, wheel.name, log), blender, log)
+            recompressed(packed, target.name, log).replace(target)
+            distribution.blender_ext(blender, "validate", target, log=log)
     refuse_any([problem for path in places.zips() for problem in problems_of_zip(path)])
     return places.zips()
+
+
+def recompressed(archive: Path, name: str, log: Path | None = None) -> Path:
+    """A smaller archive of the same files, in a folder of its own; one that is there already is kept."""
+    folder = places.WORK / "recompressed" / hashlib.sha256(archive.read_bytes()).hexdigest()[:16]
+    if not (folder / name).exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        program = ROOT / "scripts/lib/release/recompress.py"
+        run([environment.release().python, program, archive, folder / "unfinished"], log=log)
+        (folder / "unfinished").rename(folder / name)
+    return folder / name
 
 
 def pack_again(log: Path | None = None) -> None:
@@ -44,15 +62,21 @@ def problems_of_zip(path: Path) -> list[str]:
     """What a zip lacks or has too much of, a sentence each. Blender's tool has validated the manifest."""
     with zipfile.ZipFile(str(path)) as archive:
         names = archive.namelist()
-        packed = {name: archive.read(name) for name in names if name.endswith(".whl")}
+        packed = {name: _contents(io.BytesIO(archive.read(name))) for name in names if name.endswith(".whl")}
     problems = [f"{path.name} lacks {name}" for name in _NEEDED if name not in names]
     problems += [f"{path.name} has {name}" for name in names if "__pycache__" in name or name.endswith(".in")]
     wheels = {f"wheels/{wheel.name}": wheel for wheel in places.wheels()}
     if len(packed) != 1 or not packed.keys() <= wheels.keys():
         problems.append(f"{path.name} must have one wheel of this release, and has {sorted(packed)}")
-    elif any(data != wheels[name].read_bytes() for name, data in packed.items()):
-        problems.append(f"the wheel in {path.name} is not the one in {places.FILES.name}/")
-    return problems + inspection.too_large(path)
+    elif any(contents != _contents(wheels[name]) for name, contents in packed.items()):
+        problems.append(f"the wheel in {path.name} has other files than the one in {places.FILES.name}/")
+    size = path.stat().st_size
+    return problems + ([f"{path.name} has {size:,} bytes, more than {LIMIT:,}"] if size > LIMIT else [])
+
+
+def _contents(archive: Path | io.BytesIO) -> dict[str, bytes]:
+    with zipfile.ZipFile(archive) as opened:
+        return {name: opened.read(name) for name in opened.namelist()}
 
 
 def index(log: Path | None = None) -> Path:

@@ -13,8 +13,6 @@ from release import notices, places
 from release.problems import Refused, refuse_any
 from shell import ROOT, run, version
 
-LIMIT = 4_000_000
-"""Bytes of a zip, and so of its wheel, at most."""
 _LICENSES = ("LICENSE-MIT", "LICENSE-APACHE", notices.NAME)
 # Messages of getopt.c and gkregex.c, the LGPL files among the C sources of METIS, which nothing here calls.
 _LGPL = (b"Premature end of regular expression", b"option `%s' is ambiguous")
@@ -49,14 +47,9 @@ def problems_of_wheel(wheel: Path) -> list[str]:
         problems.append(f"{wheel.name} has no list of its crates (SBOM)")
     if paths:
         problems.append(f"{wheel.name} names a folder of the machine that built it: {paths[0].decode()}")
-    problems += [f"{wheel.name} holds code under the LGPL: {text.decode()}" for text in _LGPL if text in code]
-    return problems + too_large(wheel)
-
-
-def too_large(path: Path) -> list[str]:
-    """A sentence about a file that is larger than a release allows."""
-    size = path.stat().st_size
-    return [f"{path.name} has {size:,} bytes, more than {LIMIT:,}"] if size > LIMIT else []
+    return problems + [
+        f"{wheel.name} holds code under the LGPL: {text.decode()}" for text in _LGPL if text in code
+    ]
 
 
 def _audit(wheel: Path, tools: environment.Environment, log: Path | None) -> None:

@@ -96,7 +96,7 @@ STEPS = (
     Step("wheel", "the wheel of a platform, from the unpacked sdist, without git", make_wheel),
     Step("again", "the wheel a second time: the same bytes", make_wheel_again),
     Step("try", "the wheel, installed in empty environments, maps", try_wheel),
-    Step("inspect", "sdist and wheels by twine, abi3audit, auditwheel and CycloneDX; sizes", inspect),
+    Step("inspect", "sdist and wheels by twine, abi3audit, auditwheel and CycloneDX", inspect),
     Step("zips", "the extension zip of each wheel, validated; twice: the same bytes", make_zips),
     Step("index", "the index from which Blender updates the extension", make_index),
     Step("crate", "the crate as it would be published", check_crate),

@@ -246,10 +246,22 @@ def test_what_is_registered_lies_in_the_volume_of_the_target(run, folder):
     assert np.array_equal(kept["cras"], [5, 6, 7])
 
 
-def test_register_refuses_pairs_that_are_none(run, folder):
-    (folder / "landmarks.csv").write_text("1,2,3,4\n")
-    result = run("register", "ball.obj", "ball.obj", "out.obj", "--landmarks", "landmarks.csv")
-    assert result.code == 3 and "counted from 0" in result.err
+@pytest.mark.parametrize(
+    ("words", "content", "said"),
+    [
+        (["--landmarks", "file.csv"], "1,2,3,4\n", "counted from 0"),
+        (["--landmarks", "file.csv"], "", "counted from 0"),
+        (["--landmarks", "file.csv"], "a b\n0 0\n1\n", "line 3 has 1 numbers, those before have 2"),
+        (["--landmarks", "file.csv"], "a b\n\n0 0\nc d\n", "line 4 is no row of numbers: 'c d'"),
+        (["--curves", "file.csv"], "{nope", "it is no JSON"),
+        (["--curves", "file.csv"], "[]", "it must hold"),
+        (["--pull", "file.csv", "out.npy"], "1\n2\n3\n", "it has 3 rows, but the target has 258 vertices"),
+    ],
+)
+def test_register_refuses_files_that_make_no_sense(words, content, said, run, folder):
+    (folder / "file.csv").write_text(content)
+    result = run("register", "ball.obj", "ball.obj", "out.obj", *words)
+    assert result.code == 3 and said in result.err
 
 
 def test_measure_finds_a_folded_face_in_any_tools_map(run, folder):

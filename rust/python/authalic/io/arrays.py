@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+from .errors import FileError
 from .mesh import MeshData, Reals
 
-_SEPARATORS = {",", ";", "\t"}
+_TO_SPACES = str.maketrans(",;\t", "   ")
 
 
 def read_mesh(path: Path, name: str) -> MeshData:
@@ -52,20 +53,25 @@ def write_values(path: Path, values: Reals, name: str) -> None:
 
 def read_table(path: Path) -> Reals:
     """Rows of numbers between commas, semicolons, tabs or spaces, below at most one line of words."""
-    lines = [line for line in path.read_text(encoding="utf-8-sig").splitlines() if line.strip()]
-    for separator in _SEPARATORS:
-        lines = [line.replace(separator, " ") for line in lines]
-    if lines and not _is_numbers(lines[0]):
-        lines = lines[1:]
-    rows = np.array([[float(word) for word in line.split()] for line in lines])
-    return rows[:, 0] if rows.ndim == 2 and rows.shape[1] == 1 else rows
-
-
-def _is_numbers(line: str) -> bool:
-    try:
-        return bool([float(word) for word in line.split()])
-    except ValueError:
-        return False
+    rows: list[list[float]] = []
+    is_first = True
+    for number, line in enumerate(path.read_text(encoding="utf-8-sig").splitlines(), start=1):
+        words = line.translate(_TO_SPACES).split()
+        try:
+            row = [float(word) for word in words]
+        except ValueError as error:
+            if not is_first:
+                raise FileError(path, f"line {number} is no row of numbers: {line.strip()[:60]!r}") from error
+            row = []  # the line of words
+        is_first = is_first and not words
+        if row and rows and len(row) != len(rows[0]):
+            raise FileError(
+                path, f"line {number} has {len(row)} numbers, but there were {len(rows[0])} before"
+            )
+        if row:
+            rows.append(row)
+    table = np.array(rows, np.float64)
+    return table[:, 0] if table.ndim == 2 and table.shape[1] == 1 else table
 
 
 def _only_array(path: Path) -> Reals:

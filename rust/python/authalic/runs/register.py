@@ -69,6 +69,8 @@ def register_run(
     pulled = None if pull is None else (read_values(pull[0]), outputs.add(pull[1]), value_format(pull[1]))
     if features is not None:
         options["features"] = tuple(map(read_values, features))
+    if pull is not None and pulled is not None:
+        _check_rows(pull[0], pulled[0], other)
     # 2. The registration
     found = _register(mesh, other, landmarks, curves, options, progress)
     record |= _figures(found) | {"target": str(target), "target_vertices": len(other.vertices)}
@@ -94,9 +96,7 @@ def _register(
 ) -> Registration:
     surfaces = Surface(source.vertices, source.faces), Surface(target.vertices, target.faces)
     if curves is not None:
-        pair = json.loads(curves.read_text(encoding="utf-8"))
-        if not isinstance(pair, dict) or not {"source", "target"} <= pair.keys():
-            raise FileError(curves, 'it must hold {"source": [[vertices], …], "target": [[vertices], …]}')
+        pair = _curves(curves)
         options |= {f"{side}_curves": pair[side] for side in ("source", "target")}
         return register_hyperbolic(*surfaces, **options, progress=progress)
     is_closed = surfaces[0].is_closed or (bool(options.get("fill_holes")) and surfaces[1].is_closed)
@@ -106,6 +106,22 @@ def _register(
         options |= given({"weights": weights})
     register = register_spheres if is_closed else register_disks
     return register(*surfaces, **options, progress=progress)
+
+
+def _check_rows(path: Path, values: np.ndarray, mesh: MeshData) -> None:
+    """Values are those of vertices or, in the order of the faces, of corners."""
+    if len(values) not in (len(mesh.vertices), len(mesh.faces)):
+        raise FileError(path, f"it has {len(values)} rows, but the target has {len(mesh.vertices)} vertices")
+
+
+def _curves(path: Path) -> dict[str, Any]:
+    try:
+        pair = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise FileError(path, f"it is no JSON: {error}") from error
+    if not isinstance(pair, dict) or not {"source", "target"} <= pair.keys():
+        raise FileError(path, 'it must hold {"source": [[vertices], …], "target": [[vertices], …]}')
+    return pair
 
 
 def _pairs(path: Path) -> tuple[np.ndarray, np.ndarray | None]:

@@ -65,9 +65,7 @@ def read_table(path: Path) -> Reals:
             row = []  # the line of words
         is_first = is_first and not words
         if row and rows and len(row) != len(rows[0]):
-            raise FileError(
-                path, f"line {number} has {len(row)} numbers, but there were {len(rows[0])} before"
-            )
+            raise FileError(path, f"line {number} has {len(row)} numbers, those before have {len(rows[0])}")
         if row:
             rows.append(row)
     table = np.array(rows, np.float64)

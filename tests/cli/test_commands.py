@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -155,6 +156,33 @@ def test_unwrap_writes_the_librarys_uvs_at_each_corner(run, folder):
     mesh = read_mesh(folder / "uv.obj")
     assert np.array_equal(mesh.uv[mesh.uv_faces], expected.uv[expected.faces])
     assert result.record["islands"] == expected.islands and result.record["shear"] == expected.shear
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        (("sphere", "ball.obj"), "out.surf.gii"),
+        (("disk", "cap.obj"), "out.surf.gii"),
+        (("layout", "ball.obj"), "out.glb"),
+        (("unwrap", "torus.obj"), "out.glb"),
+    ],
+)
+def test_folds_by_the_precision_of_the_file_are_counted(words, name, run, folder):
+    assert run(*words, name, "--json").record["folded_in_file"] == 0
+    assert "folded_in_file" not in run(*words, "out.npz", "--json").record
+
+
+def test_folds_by_the_precision_of_the_file_are_told(run, folder, monkeypatch):
+    """A cap so far from the origin of the plane that single precision has no place for its faces."""
+    from authalic.runs import disk
+
+    mapped = authalic.disk_map(*meshes.bumpy_cap())
+    far = SimpleNamespace(uv=mapped.uv + 1e6, repaired=None)
+    monkeypatch.setattr(disk, "disk_map", lambda *_, **__: far)
+    monkeypatch.setattr(disk, "map_figures", lambda _: {})
+    expected = authalic.distortion(*meshes.bumpy_cap(), far.uv.astype("f4").astype("f8")).folded
+    result = run("disk", "cap.obj", "out.surf.gii")
+    assert len(expected) > 50 and f"single precision of the file: {len(expected)} faces" in result.err
 
 
 def test_unwrap_leaves_islands_where_they_are_or_apart(run, folder):

@@ -12,7 +12,7 @@ from .._native import disk_map
 from ..io import Format, MeshData, Outputs, mesh_format
 from ..io.files import save_mesh
 from .areal import ArealFile
-from .record import Progress, Record, given, map_figures, map_metadata, read_input
+from .record import Progress, Record, folds_in_file, given, map_figures, map_metadata, read_input
 from .repair import repair_figures, repaired_mesh
 
 
@@ -40,6 +40,7 @@ def disk_run(
     result = disk_map(mesh.vertices, mesh.faces, **options, progress=progress)
     record |= map_figures(result) | repair_figures(result.repaired)
     mesh = repaired_mesh(mesh, result.repaired)
+    record |= folds_in_file(mesh.vertices, mesh.faces, result.uv, format)
     # 3. The files
     with outputs:
         flat = MeshData(mesh.vertices, mesh.faces, result.uv, mesh.faces, mesh.metadata)

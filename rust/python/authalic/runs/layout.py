@@ -10,7 +10,7 @@ import numpy as np
 from .._native import distortion, sphere_map
 from ..io import MeshData, Outputs, mesh_format
 from .disk import save_flat
-from .record import Progress, Record, distortion_figures, given, read_input
+from .record import Progress, Record, distortion_figures, folds_in_file, given, read_input
 from .repair import repair_figures, repaired_mesh
 
 
@@ -36,12 +36,12 @@ def layout_run(
     record |= repair_figures(sphere.repaired)
     mesh = repaired_mesh(mesh, sphere.repaired)
     flat = sphere.layout(**layout)
-    figures = distortion(mesh.vertices[flat.vertex_of], flat.faces, flat.points)
-    record |= {"status": flat.status, "seconds": sphere.seconds + flat.seconds} | distortion_figures(figures)
+    points, corners = np.asarray(flat.points, np.float64), mesh.vertices[flat.vertex_of]
+    record |= {"status": flat.status, "seconds": sphere.seconds + flat.seconds}
+    record |= distortion_figures(distortion(corners, flat.faces, points))
+    record |= folds_in_file(corners, flat.faces, points, format)
     # 3. The file
     with outputs:
-        result = MeshData(
-            mesh.vertices, mesh.faces, np.asarray(flat.points, np.float64), flat.faces, mesh.metadata
-        )
+        result = MeshData(mesh.vertices, mesh.faces, points, flat.faces, mesh.metadata)
         save_flat(place, result, format, record)
     return record | {"output": str(target)}

@@ -6,8 +6,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from .._native import Distortion, __version__
-from ..io import MeshData, read_mesh
+import numpy as np
+
+from .._native import Distortion, __version__, distortion
+from ..io import Format, MeshData, read_mesh
 
 Record = dict[str, Any]
 Progress = Callable[[float, str], bool | None] | None
@@ -53,15 +55,23 @@ def map_figures(result: Any) -> Record:
     return figures | distortion_figures(result.distortion)
 
 
-def distortion_figures(distortion: Distortion) -> Record:
+def distortion_figures(figures: Distortion) -> Record:
     return {
-        "authalic_energy": float(distortion.authalic_energy),
-        "area_ratio_std": float(distortion.area_ratio_std),
-        "angle_distortion_mean": float(distortion.angle_distortion_mean),
-        "angle_distortion_p99": float(distortion.angle_distortion_p99),
-        "angle_distortion_max": float(distortion.angle_distortion_max),
-        "folded": len(distortion.folded),
+        "authalic_energy": float(figures.authalic_energy),
+        "area_ratio_std": float(figures.area_ratio_std),
+        "angle_distortion_mean": float(figures.angle_distortion_mean),
+        "angle_distortion_p99": float(figures.angle_distortion_p99),
+        "angle_distortion_max": float(figures.angle_distortion_max),
+        "folded": len(figures.folded),
     }
+
+
+def folds_in_file(vertices: np.ndarray, faces: np.ndarray, image: np.ndarray, format: Format) -> Record:
+    """How many faces of a map fold when it is rounded to the precision of its file."""
+    if format.precision == "float64":
+        return {}
+    rounded = image.astype(np.float32).astype(np.float64)
+    return {"folded_in_file": len(distortion(vertices, faces, rounded).folded)}
 
 
 def given(options: Mapping[str, Any]) -> dict[str, Any]:

@@ -5,13 +5,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from .._native import distortion, sphere_map
+from .._native import sphere_map
 from ..io import MeshData, Outputs, mesh_format
 from ..io.files import save_mesh
 from .areal import ArealFile
-from .record import Progress, Record, given, map_figures, map_metadata, read_input
+from .record import Progress, Record, folds_in_file, given, map_figures, map_metadata, read_input
 from .repair import repair_figures, repaired_mesh
 
 FREESURFER_RADIUS = 100.0
@@ -63,18 +61,10 @@ def sphere_run(
     # 3. The sphere as the file holds it
     radius = radius or (FREESURFER_RADIUS if format.name in ("freesurfer", "gifti") else 1.0)
     points = radius * result.positions
-    record |= {"radius": radius} | _in_single_precision(mesh, points, format.precision)
+    record |= {"radius": radius} | folds_in_file(mesh.vertices, mesh.faces, points, format)
     # 4. The files
     with outputs:
         metadata = map_metadata(mesh, "Spherical") | {"record": dict(record)}
         save_mesh(place, MeshData(points, mesh.faces, metadata=metadata), format)
         record |= {"output": str(target)} | areal_file.save(mesh.vertices, mesh.faces, result.positions)
     return record
-
-
-def _in_single_precision(mesh: MeshData, points: np.ndarray, precision: str) -> Record:
-    """How many faces fold when coordinates are rounded to the file's precision."""
-    if precision == "float64":
-        return {}
-    rounded = points.astype(np.float32).astype(np.float64)
-    return {"folded_in_file": len(distortion(mesh.vertices, mesh.faces, rounded).folded)}

@@ -12,7 +12,7 @@ from ..io import FileError, MeshData, Outputs, mesh_format
 from ..io.files import save_mesh
 from ..io.obj import append_lines
 from .disk import save_flat
-from .record import Progress, Record, distortion_figures, given, read_input
+from .record import Progress, Record, distortion_figures, folds_in_file, given, read_input
 
 SEAM_FORMATS = ("csv", "npz", "obj")
 
@@ -41,7 +41,9 @@ def unwrap_run(
         **{"shear": found.shear, "shear_p99": found.shear_p99},
         **{"packed": found.packed, "seconds": found.seconds},
     }
-    record |= distortion_figures(distortion(mesh.vertices[found.vertex_of], found.faces, found.uv))
+    corners = mesh.vertices[found.vertex_of]
+    record |= distortion_figures(distortion(corners, found.faces, found.uv))
+    record |= folds_in_file(corners, found.faces, found.uv, format)
     with outputs:
         result = MeshData(mesh.vertices, mesh.faces, found.uv, found.faces, mesh.metadata)
         save_flat(place, result, format, record)

@@ -69,6 +69,7 @@ REGISTRATION = {
     "feature_weight": None,
     "position_weight": 0.0,
     "fill_holes": False,
+    "repair": False,
     "progress": None,
     "preview": None,
 }
@@ -138,6 +139,7 @@ KEYWORDS = {
         "tolerance": None,
         "fill_holes": False,
         "overlap": False,
+        "repair": False,
         "progress": None,
     },
     "cut": {"seams": None},
@@ -153,6 +155,7 @@ KEYWORDS = {
         "feature_weight": None,
         "position_weight": 0.0,
         "fill_holes": False,
+        "repair": False,
         "metric": "newton",
         "solver": "newton",
         "max_iterations": None,

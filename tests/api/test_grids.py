@@ -213,10 +213,12 @@ def test_grids_do_not_depend_on_the_threads(ball):
     ("call", "words"),
     [
         (lambda ball, cap: ball.equirectangular(np.ones(258), (0, 5)), "shape must be"),
+        (lambda ball, cap: ball.equirectangular(np.ones(258), 7), r"shape must be \(rows, columns\).*is 7"),
+        (lambda ball, cap: cap.image(np.ones(421), (2, 3, 4)), r"shape must be .* is \(2, 3, 4\)"),
         (lambda ball, cap: ball.equirectangular(np.ones(258), (10**9, 10**9)), "shape must be of 1 to"),
-        (lambda ball, cap: ball.equal_area_grid(np.ones(258), -1), "shape must be"),
+        (lambda ball, cap: ball.equal_area_grid(np.ones(258), -1), "n must be ≥ 1, but is -1"),
         (lambda ball, cap: ball.resample(np.ones(258), 11), "level must be 0 to 10, but is 11"),
-        (lambda ball, cap: ball.resample(np.ones(258), -1), "level must be 0 to 10"),
+        (lambda ball, cap: ball.resample(np.ones(258), -1), "level must be 0 to 10, but is -1"),
         (
             lambda ball, cap: ball.resample(np.ones(258), 1, conservative="sum"),
             "conservative must be True, False",
@@ -230,6 +232,14 @@ def test_grids_do_not_depend_on_the_threads(ball):
 def test_what_is_no_grid_is_refused(ball, cap, call, words):
     with pytest.raises(ValueError, match=words):
         call(ball, cap)
+
+
+def test_shapes_may_be_any_two_numbers(ball, cap):
+    values = ball.positions[:, 0]
+    expected = ball.equirectangular(values, (4, 6))
+    for shape in ([4, 6], np.array([4, 6]), (np.int32(4), np.uint8(6))):
+        assert np.array_equal(ball.equirectangular(values, shape), expected)
+    assert cap.image(cap.uv[:, 0], [3, 5]).shape == (3, 5)
 
 
 def test_maps_show_a_picture_in_notebooks(ball, cap):

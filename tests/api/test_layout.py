@@ -4,6 +4,7 @@
 import doctest
 import inspect
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -504,6 +505,107 @@ def test_maps_of_a_registration_are_laid_out():
         layout = sphere_map.layout("octahedral")
         assert oracle.folded(layout.points, layout.faces) == []
         assert area_ratios(layout, mesh).std() < sphere_map.distortion.area_ratio_std + 0.02
+
+
+# Open surfaces
+
+
+def covered(layout, points):
+    """The number of faces in which each point lies."""
+    a, b, c = corners(layout).transpose(1, 0, 2)
+    x, y = points.T[..., None]
+    sides = [
+        (q - p)[:, 0] * (y - p[:, 1]) - (q - p)[:, 1] * (x - p[:, 0]) for p, q in ((a, b), (b, c), (c, a))
+    ]
+    return (np.min(sides, axis=0) > 1e-12).sum(axis=1)
+
+
+def opened_ball(is_hole):
+    ball = meshes.bumpy_ball(3)
+    middles = ball.vertices[ball.faces].mean(axis=1)
+    middles /= np.linalg.norm(middles, axis=1, keepdims=True)
+    return meshes.compact(meshes.Mesh(ball.vertices, ball.faces[~is_hole(middles)]))
+
+
+HOLES = {
+    "a pole": lambda x: x[:, 2] > 0.8,
+    "both poles": lambda x: abs(x[:, 2]) > 0.7,
+    "six": lambda x: (abs(x) > 0.93).any(axis=1),
+    "a long slit": lambda x: (abs(x[:, 0]) < 0.2) & (x[:, 2] > -0.5),
+    "more than half": lambda x: x[:, 2] > -0.3,
+}
+
+
+@pytest.mark.parametrize("kind", ["lambert", "octahedral"])
+@pytest.mark.parametrize("pole", ["x", "z"])
+@pytest.mark.parametrize("holes", HOLES)
+def test_holes_stay_open_in_a_layout_that_lies_nowhere_over_itself(kind, pole, holes):
+    mesh = opened_ball(HOLES[holes])
+    ball = authalic.sphere_map(*mesh, fill_holes=True)
+    layout = ball.layout(kind, pole=pole)
+    # the points are those of the surface alone, all of them in a face
+    assert layout.faces.shape == mesh.faces.shape
+    assert np.array_equal(layout.vertex_of[layout.faces], ball.faces)
+    assert np.array_equal(np.unique(layout.faces), np.arange(len(layout.points)))
+    assert (np.diff(layout.vertex_of) >= 0).all()
+    assert oracle.folded(layout.points, layout.faces) == []
+    # areas are those on the sphere, holes left out
+    area = oracle.signed_areas(layout.points, layout.faces)
+    on_sphere = oracle.face_areas(ball.positions, ball.faces)
+    assert area.sum() == pytest.approx(on_sphere.sum(), rel=0.03)
+    assert area_ratios(layout, mesh).std() < 0.03
+    # no point lies in two faces, nor in the next period of a Lambert layout
+    rng = np.random.default_rng(4)
+    weights = rng.dirichlet([1, 1, 1], len(mesh.faces))
+    inside = np.einsum("ij,ijk->ik", weights, layout.points[layout.faces])
+    turn = [2 * np.pi, 0] if kind == "lambert" else [0, 0]
+    for shift in ([0, 0], turn):
+        assert (covered(layout, inside + shift) <= 1).all()
+    saved = pickle.loads(pickle.dumps(ball)).layout(kind, pole=pole)
+    assert np.array_equal(saved.points, layout.points)
+
+
+def test_polygons_and_densities_are_those_of_the_given_faces():
+    mesh = opened_ball(HOLES["a pole"])
+    ball = authalic.sphere_map(*mesh, fill_holes=True)
+    density = np.where(np.arange(len(mesh.faces)) % 2, 1.0, 1.2)
+    layout = ball.layout(density=density * oracle.face_areas(*mesh))
+    area = oracle.signed_areas(layout.points, layout.faces) / oracle.face_areas(*mesh)
+    assert area[1::2].mean() / area[::2].mean() == pytest.approx(1 / 1.2, rel=0.01)
+    polygons = ball.layout(polygons=np.arange(len(mesh.faces)) // 2)
+    assert oracle.folded(polygons.points, polygons.faces) == []
+    with pytest.raises(authalic.MeshError, match=f"of shape \\({len(mesh.faces)},\\)"):
+        ball.layout(density=np.ones(len(mesh.faces) + 1))
+
+
+def test_maps_of_a_registration_with_filled_holes_are_laid_out():
+    source, target = opened_ball(HOLES["a pole"]), meshes.bumpy_ball(3)
+    registered = authalic.register_spheres(
+        source, target, source_landmarks=[200, 250], target_landmarks=[200, 250], fill_holes=True
+    )
+    for each in (registered, pickle.loads(pickle.dumps(registered))):
+        layout = each.source_map.layout()
+        assert np.array_equal(layout.vertex_of[layout.faces], each.source_map.faces)
+        assert oracle.folded(layout.points, layout.faces) == []
+
+
+def test_a_map_whose_holes_nobody_filled_is_refused(tmp_path):
+    """As files of earlier versions have it."""
+    ball = authalic.sphere_map(*opened_ball(HOLES["six"]), fill_holes=True)
+    ball.save(tmp_path / "ball.npz")
+    with np.load(tmp_path / "ball.npz") as entries:
+        arrays = {name: array for name, array in entries.items() if not name.startswith("_filling")}
+    table = json.loads(str(arrays["authalic"]))
+    del table["content"]["state"]["_filling"]
+    np.savez(tmp_path / "old.npz", **{**arrays, "authalic": np.array(json.dumps(table))})
+    old = authalic.load(tmp_path / "old.npz")
+    assert np.array_equal(old.positions, ball.positions)
+    with pytest.raises(authalic.MeshError, match=r"has holes, .* map the surface anew") as caught:
+        old.layout()
+    assert caught.value.kind == "open_surface"
+    rims = np.concatenate(authalic.Surface(ball.positions, ball.faces).boundary_loops)
+    assert caught.value.count == len(rims)
+    assert set(caught.value.indices) <= set(rims.tolist())
 
 
 # Runs

@@ -82,6 +82,16 @@ RESULTS = {
     "untangled": folded_and_untangled,
     "repaired": lambda: authalic.repair(*meshes.bumpy_cap()),
     "repaired and mapped": lambda: authalic.sphere_map(*meshes.bumpy_ball(), repair=True),
+    "layout of a sphere with a hole": lambda: authalic.sphere_map(
+        *opened(meshes.bumpy_ball()), fill_holes=True
+    ).layout(),
+    "repaired registration": lambda: authalic.register_spheres(
+        opened(meshes.bumpy_ball()),
+        meshes.ball(2),
+        source_landmarks=[0, 9],
+        target_landmarks=[0, 5],
+        repair=True,
+    ),
     "sphere with a hole": lambda: authalic.sphere_map(*opened(meshes.bumpy_ball()), fill_holes=True),
     "seams": lambda: authalic.seams(meshes.octahedron(), target=1.1),
     "unwrap": lambda: authalic.unwrap(meshes.octahedron(), target=1.1),
@@ -314,6 +324,43 @@ def test_a_file_of_a_later_format_is_refused_by_its_version(tmp_path):
         authalic.load(tmp_path / "later.npz")
 
 
+def test_damaged_files_are_refused_by_their_names(tmp_path):
+    path = tmp_path / "ball.npz"
+    authalic.sphere_map(*meshes.ball(2)).save(path)
+    whole = path.read_bytes()
+    with np.load(path) as entries:
+        arrays = dict(entries)
+    damaged = tmp_path / "damaged.npz"
+    for length in (0, 1, 10, 100, len(whole) // 2, len(whole) - 5):
+        damaged.write_bytes(whole[:length])
+        with pytest.raises(ValueError, match=r"damaged\.npz is no result of authalic"):
+            authalic.load(damaged)
+    for place in (len(whole) // 4, len(whole) // 2):
+        changed = bytearray(whole)
+        changed[place] ^= 0xFF
+        damaged.write_bytes(changed)
+        with pytest.raises(ValueError, match=r"damaged\.npz is damaged"):
+            authalic.load(damaged)
+    np.savez(damaged, **{name: array for name, array in arrays.items() if name != "positions"})
+    with pytest.raises(ValueError, match=r"damaged\.npz is damaged"):
+        authalic.load(damaged)
+    for table in (
+        "{}",
+        "no table",
+        '{"format": "x"}',
+        "[]",
+        '{"format": 1}',
+        '{"format": 1, "content": {"kind": 3}}',
+    ):
+        np.savez(damaged, **{**arrays, "authalic": np.array(table)})
+        try:
+            loaded = authalic.load(damaged)
+        except ValueError as refusal:
+            assert "damaged.npz" in str(refusal)
+        else:
+            raise AssertionError(f"loaded {loaded!r} from the table {table}")
+
+
 def test_what_is_no_result_is_refused(tmp_path):
     np.savez(tmp_path / "other.npz", a=np.zeros(3))
     np.save(tmp_path / "one.npy", np.zeros(3))
@@ -375,6 +422,21 @@ def test_the_provenance_names_versions_options_and_input():
     json.dumps(record)
 
 
+def test_the_provenance_of_a_layout_and_of_a_packing_names_what_was_laid_out():
+    ball = authalic.sphere_map(*meshes.bumpy_ball())
+    inputs = ball.layout().provenance["inputs"]
+    assert inputs["map"]["sha256"] == digest(ball.positions, ball.faces)
+    uv = np.array([[0, 0], [1, 0], [0, 1.5]])
+    packing = authalic.pack(uv, [[0, 1, 2]], [0], rotate="cardinal")
+    assert packing.provenance["inputs"]["uv"] == {
+        "sha256": digest(uv, [[0, 1, 2]]),
+        "vertices": 3,
+        "faces": 1,
+    }
+    assert packing.provenance["options"]["rotate"] == "cardinal"
+    assert authalic.pack(uv, [[0, 1, 2]], [0], rotate=False).provenance["options"]["rotate"] is False
+
+
 def test_the_provenance_of_a_registration_names_both_surfaces():
     source = meshes.bumpy_cap()
     registration = on_disks()
@@ -408,6 +470,18 @@ def test_all_functions_leave_their_options_in_the_provenance():
         record = RESULTS[name]().provenance
         assert record["function"] == function
         assert record["options"].keys() == KEYWORDS[function].keys() - {"progress", "preview"}
+    layout, packing = RESULTS["layout"]().provenance, packed().provenance
+    assert (layout["function"], packing["function"]) == ("layout", "pack")
+    assert packing["options"].keys() == {"island_of"} | KEYWORDS["pack"].keys() - {"progress"}
+    assert layout["options"] == {
+        "kind": "lambert",
+        "pole": "z",
+        "seam": 0.0,
+        "polygons": None,
+        "density": None,
+        "candidates": None,
+        "precision": "float32",
+    }
     for make, function in ((on_disks, "register_disks"), (by_curves, "register_hyperbolic")):
         options = make().provenance["options"]
         assert options.keys() == KEYWORDS[function].keys() - {"progress", "preview"}

@@ -173,7 +173,7 @@ pub use registration::{
 pub use repair::{CloseHandles, CloseHoles, Keep, RepairCounts, RepairOptions, Repaired, repair};
 pub use resampling::{CellIntegrals, Grid, Icosphere, InverseMap, Outside, PerElement, Places, RefinedFaces};
 pub use seams::{SeamMethod, SeamOptions, Seams, Symmetry, seams};
-pub use sphere::{Refinement, SphereMap, SphereMapOptions, SphereMethod, sphere_map};
+pub use sphere::{Refinement, SphereFilling, SphereMap, SphereMapOptions, SphereMethod, sphere_map};
 pub use untangle::{UntangleOptions, Untangled, untangle};
 pub use unwrap::{Unwrap, UnwrapOptions, UnwrapSeams, unwrap};
 

@@ -67,9 +67,14 @@ def load(path: str | os.PathLike[str]) -> Any:
     with _opened(path) as entries:
         table = _table(entries, path)
         try:
-            return _made(table["content"], entries)
+            result = _made(table["content"], entries)
         except _DAMAGE as problem:
             raise ValueError(f"{os.fspath(path)} is damaged: {_words(problem)}") from problem
+    if not isinstance(result, _native.Result):
+        raise ValueError(
+            f"{os.fspath(path)} is damaged: it holds {type(result).__name__} in place of a result"
+        )
+    return result
 
 
 def provenance_in(path: str | os.PathLike[str]) -> dict[str, Any] | None:

@@ -195,6 +195,9 @@ class Repaired(Result):
     def report(self) -> str: ...
     @property
     def is_changed(self) -> bool: ...
+    def carry(
+        self, values: ArrayLike, *, per: Literal["vertex", "face"] | None = None, nearest: bool = False
+    ) -> NDArray[Any]: ...
 
 @final
 class Distortion(Result):
@@ -251,7 +254,7 @@ class DiskMap(Result):
     def image(
         self,
         values: ArrayLike,
-        shape: tuple[int, int],
+        shape: Sequence[int],
         *,
         extent: ArrayLike | None = None,
         per: Literal["vertex", "face"] | None = None,
@@ -308,7 +311,7 @@ class SphereMap(Result):
     def equirectangular(
         self,
         values: ArrayLike,
-        shape: tuple[int, int],
+        shape: Sequence[int],
         *,
         per: Literal["vertex", "face"] | None = None,
         nearest: bool = False,
@@ -481,6 +484,10 @@ class Registration(Result):
     @property
     def iterations(self) -> int: ...
     @property
+    def source_repaired(self) -> Repaired | None: ...
+    @property
+    def target_repaired(self) -> Repaired | None: ...
+    @property
     def seconds(self) -> float: ...
     def pull(
         self,
@@ -590,7 +597,7 @@ def repair(
     vertices: ArrayLike | _Handle,
     faces: ArrayLike | None = None,
     *,
-    merge: float | None = 0.0,
+    merge: float | bool | None = 0.0,
     close_holes: bool | int | Literal["pinholes"] = "pinholes",
     keep_outline: bool = False,
     close_handles: bool | float | Literal["noise"] = False,
@@ -643,6 +650,7 @@ def disk_maps(
     tolerance: float | None = None,
     fill_holes: bool = False,
     overlap: bool = False,
+    repair: bool = False,
     progress: _Progress | None = None,
 ) -> list[DiskMap | MeshError | SolverError | None]: ...
 def sphere_map(
@@ -738,6 +746,7 @@ def register_disks(
     feature_weight: ArrayLike | None = None,
     position_weight: float = 0.0,
     fill_holes: bool = False,
+    repair: bool = False,
     progress: _Progress | None = None,
     preview: Callable[[_Reals], object] | None = None,
 ) -> Registration: ...
@@ -756,6 +765,7 @@ def register_spheres(
     feature_weight: ArrayLike | None = None,
     position_weight: float = 0.0,
     fill_holes: bool = False,
+    repair: bool = False,
     progress: _Progress | None = None,
     preview: Callable[[_Reals], object] | None = None,
 ) -> Registration: ...
@@ -772,6 +782,7 @@ def register_hyperbolic(
     feature_weight: ArrayLike | None = None,
     position_weight: float = 0.0,
     fill_holes: bool = False,
+    repair: bool = False,
     metric: Literal["newton", "ricci_flow"] = "newton",
     solver: Literal["newton", "heat"] = "newton",
     max_iterations: int | None = None,

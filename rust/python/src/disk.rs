@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use authalic::{Boundary, DiskMapOptions, DiskMethod, Error, Grid, InverseMap, Record, RepairOptions};
-use numpy::ndarray::ArrayView2;
+use numpy::ndarray::{Array1, ArrayView2};
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -13,11 +13,9 @@ use crate::arrays::{Reals, from_array, real_table, reals, reals_of_each};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, to_python};
 use crate::indices::{from_indices, index_list, narrowed};
-use crate::lookup::{
-    Beyond, Conservative, Invertible, Located, Lookup, Request, grid_shape, image_of, locate,
-};
+use crate::lookup::{Beyond, Conservative, Invertible, Located, Lookup, Request, Shape, image_of, locate};
 use crate::options::{history, parse_iterations};
-use crate::provenance::{Call, Origin, fingerprint, options};
+use crate::provenance::{Call, Fingerprint, Origin, options};
 use crate::repair::{Prepared, Repaired, check_no_start};
 use crate::result::{Restorable, ResultBase, State, made};
 use crate::run::run;
@@ -316,14 +314,14 @@ impl DiskMap {
         &self,
         py: Python<'_>,
         values: &Bound<'_, PyAny>,
-        shape: (i64, i64),
+        shape: Shape,
         extent: Option<&Bound<'_, PyAny>>,
         per: Option<&str>,
         nearest: bool,
         conservative: Conservative,
         outside: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Py<PyAny>> {
-        let [rows, columns] = grid_shape(shape)?;
+        let Shape([rows, columns]) = shape;
         let extent = extent.map_or_else(|| Ok(self.extent(py)), parse_extent)?;
         let request = Request { values, per, nearest, beyond: Beyond::new(outside)? };
         request.in_cells(py, self.inverse(py)?, Grid::Planar { rows, columns, extent }, conservative)
@@ -496,7 +494,8 @@ pub fn disk_map(
             corners,
             aspect,
         };
-        Ok((authalic::disk_map(&prepared.surface, &options, observer)?, prepared, input))
+        let map = prepared.mapped(|surface| authalic::disk_map(surface, &options, observer))?;
+        Ok((map, prepared, input))
     })?;
     // 3. The result
     let Prepared { surface, repaired, .. } = prepared;
@@ -531,6 +530,8 @@ pub fn disk_map(
 ///     Fill all boundary loops but the longest virtually.
 /// overlap : bool
 ///     Let free boundaries cross themselves.
+/// repair : bool
+///     Repair each surface first. The map is then that of its `repaired`, while densities are those of the faces given.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between surfaces and within large ones; False ends the run.
 ///
@@ -556,7 +557,7 @@ pub fn disk_map(
 #[pyfunction]
 #[pyo3(signature = (surfaces, *, densities=None, method="gauss_newton", boundary="sliding", angle_weight=0.0,
                     area_tolerance=None, max_iterations=None, tolerance=None, fill_holes=false, overlap=false,
-                    progress=None))]
+                    repair=false, progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn disk_maps(
     py: Python<'_>,
@@ -570,25 +571,34 @@ pub fn disk_maps(
     tolerance: Option<f64>,
     fill_holes: bool,
     overlap: bool,
+    repair: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Vec<Option<Py<PyAny>>>> {
     // 1. Arguments to plain data
     let kept = options!(
-        py; method, boundary, angle_weight, area_tolerance, max_iterations, tolerance, fill_holes, overlap
+        py; method, boundary, angle_weight, area_tolerance, max_iterations, tolerance, fill_holes, overlap,
+        repair
     )?;
     let (method, boundary) = (parse_method(method)?, parse_boundary(boundary)?);
     let max_iterations = max_iterations.map(parse_iterations).transpose()?;
     let names = ["surfaces", "vertices", "faces"];
     let given = surfaces.iter().map(|each| Given::pair(each, names)).collect::<PyResult<Vec<_>>>()?;
     let densities = reals_of_each(py, densities, ["densities", "density"], given.len())?;
+    let repair = repair.then(|| RepairOptions::for_a_map(true));
     // 2. The run
-    let (maps, surfaces) = run(py, progress, move |observer| {
-        let surfaces = given.into_iter().map(Given::surface).collect::<Result<Vec<_>, Error>>()?;
-        let with_options = surfaces.iter().zip(&densities).map(|(surface, density)| {
+    let (maps, prepared) = run(py, progress, move |observer| {
+        let prepare = |(given, density): (Given, Option<Array1<f64>>)| -> Result<_, Error> {
+            let input = given.fingerprint();
+            let prepared = Prepared::new(given, density, repair.as_ref());
+            // what a repair cannot mend has no map, but arrays that do not fit are refused
+            if repair.is_none() { Ok((Ok(prepared?), input)) } else { Ok((prepared, input)) }
+        };
+        let prepared = given.into_iter().zip(densities).map(prepare).collect::<Result<Vec<_>, Error>>()?;
+        let with_options = prepared.iter().filter_map(|(each, _)| each.as_ref().ok()).map(|each| {
             let options = DiskMapOptions {
                 method,
                 boundary,
-                density: density.as_ref().map(|density| density.view()),
+                density: each.density.as_ref().map(|density| density.view()),
                 angle_weight,
                 area_tolerance,
                 max_iterations,
@@ -597,22 +607,33 @@ pub fn disk_maps(
                 overlap,
                 ..Default::default()
             };
-            (surface.clone(), options)
+            (each.surface.clone(), options)
         });
         let maps = authalic::disk_maps(&with_options.collect::<Vec<_>>(), observer);
-        Ok((maps, surfaces))
+        Ok((maps, prepared))
     })?;
     // 3. The results
-    let results = maps.into_iter().zip(&surfaces).map(|(map, surface)| match map {
-        None => Ok(None),
-        Some(Ok(map)) => {
-            let call = Call::new("disk_maps", &kept, "surface", fingerprint(surface));
-            Ok(Some(DiskMap::new(py, map, oriented(surface).view(), None, Some(call))?.into_any()))
+    let mut maps = maps.into_iter();
+    let result = |(prepared, input): (Result<Prepared, Error>, Fingerprint)| {
+        let map = match prepared {
+            Ok(prepared) => {
+                maps.next().flatten().map(|map| prepared.mapped(|_| map).map(|map| (map, prepared)))
+            }
+            Err(error) => Some(Err(error)),
+        };
+        match map {
+            None => Ok(None),
+            Some(Ok((map, Prepared { surface, repaired, .. }))) => {
+                let repaired = repaired.map(|repaired| Repaired::new(py, repaired, None)).transpose()?;
+                let call = Call::new("disk_maps", &kept, "surface", input);
+                let map = DiskMap::new(py, map, oriented(&surface).view(), repaired, Some(call))?;
+                Ok(Some(map.into_any()))
+            }
+            Some(Err(error @ Error::InvalidOption { .. })) => Err(to_python(py, &error)),
+            Some(Err(error)) => Ok(Some(to_python(py, &error).into_value(py).into_any())),
         }
-        Some(Err(error @ Error::InvalidOption { .. })) => Err(to_python(py, &error)),
-        Some(Err(error)) => Ok(Some(to_python(py, &error).into_value(py).into_any())),
-    });
-    results.collect()
+    };
+    prepared.into_iter().map(result).collect()
 }
 
 fn parse_method(method: &str) -> PyResult<DiskMethod> {

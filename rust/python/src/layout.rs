@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use crate::arrays::{from_array, reals};
 use crate::errors::{bad_array, bad_option};
 use crate::indices::{from_index_list, from_indices, labels, vertex_set};
+use crate::provenance::{Call, Options, fingerprint, options};
 use crate::result::{ResultBase, made, restorable};
 use crate::run::run;
 use crate::values::Values;
@@ -19,7 +20,7 @@ use crate::values::Values;
 pub struct Layout {
     /// (k, 2) float64 or float32, as requested: the points in the order of their vertices.
     ///
-    /// The whole image has the area of the unit sphere.
+    /// The whole image, with holes, has the area of the unit sphere.
     points: Py<PyAny>,
     /// (m, 3) int64: the faces of the map, or of its refinement, between points, counter-clockwise.
     faces: Py<PyArray2<i64>>,
@@ -88,8 +89,9 @@ pub fn layout(
         }
         None => None,
     };
+    let kept = arguments.kept(py)?;
     // 2. The run
-    let layout = run(py, arguments.progress, move |observer| {
+    let (layout, input) = run(py, arguments.progress, move |observer| {
         let options = LayoutOptions {
             kind,
             pole,
@@ -99,7 +101,7 @@ pub fn layout(
             candidates: candidates.as_deref(),
             precision,
         };
-        authalic::layout(&sphere, &options, observer)
+        Ok((authalic::layout(&sphere, &options, observer)?, fingerprint(&sphere.image)))
     })?;
     // 3. The result
     let layout = Layout {
@@ -112,7 +114,20 @@ pub fn layout(
         status: layout.status.as_str(),
         seconds: layout.seconds,
     };
-    made(py, layout, None)
+    made(py, layout, Call::new("layout", &kept, "map", input).into())
+}
+
+impl Arguments<'_, '_> {
+    /// The options for the provenance.
+    fn kept(&self, py: Python<'_>) -> PyResult<Options> {
+        let &Self { kind, pole, seam, polygons, density, candidates, precision, .. } = self;
+        let or_default = |given: Option<&Bound<'_, PyAny>>, default: Bound<'_, PyAny>| {
+            given.cloned().unwrap_or(default.clone()).unbind()
+        };
+        let pole = or_default(pole, "z".into_pyobject(py)?.into_any());
+        let seam = or_default(seam, 0.0_f64.into_pyobject(py)?.into_any());
+        options!(py; kind, pole, seam, polygons, density, candidates, precision)
+    }
 }
 
 fn parse_kind(kind: &str) -> PyResult<LayoutKind> {

@@ -14,7 +14,7 @@ use crate::arrays::{Reals, own_array, real_table};
 use crate::errors::{bad_array, bad_option, to_python};
 use crate::indices::integer_list;
 use crate::run::run;
-use crate::values::{Values, from_values};
+use crate::values::{Values, from_values, table_of};
 
 /// The inverse of a map, made when it is asked for the first time.
 pub struct Lookup(PyOnceLock<Arc<InverseMap>>);
@@ -121,11 +121,21 @@ impl<'py> FromPyObject<'_, 'py> for Conservative {
 }
 
 /// The shape of a grid, (rows, columns).
-pub fn grid_shape(shape: (i64, i64)) -> PyResult<[usize; 2]> {
-    let [rows, columns] = [shape.0, shape.1].map(|length| usize::try_from(length).ok().filter(|&n| n > 0));
-    rows.zip(columns).map(Into::into).ok_or_else(|| {
-        bad_option(format!("shape must be (rows, columns), each ≥ 1, but is ({}, {})", shape.0, shape.1))
-    })
+pub struct Shape(pub [usize; 2]);
+
+impl<'py> FromPyObject<'_, 'py> for Shape {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let count = |length: Bound<'py, PyAny>| length.extract::<usize>().ok().filter(|&length| length > 0);
+        let lengths = given.try_iter().and_then(|lengths| lengths.take(3).collect::<PyResult<Vec<_>>>());
+        match lengths.unwrap_or_default().into_iter().map(count).collect::<Vec<_>>()[..] {
+            [Some(rows), Some(columns)] => Ok(Self([rows, columns])),
+            _ => {
+                Err(bad_option(format!("shape must be (rows, columns), each ≥ 1, but is {}", given.repr()?)))
+            }
+        }
+    }
 }
 
 /// Values of a surface that are asked for at points.
@@ -161,7 +171,7 @@ impl Request<'_, '_> {
             return values.taken_or(&rows, self.beyond.fill, shape);
         }
         let fill = self.beyond.fill.map_or(Ok(f64::NAN), |fill| fill.extract())?;
-        let numbers = self.numbers(&values)?;
+        let numbers = table_of(&values)?;
         let sampled = run(py, None, move |observer| {
             map.sample(numbers.view(), per, points.view(), (outside, fill), observer)
         })?;
@@ -227,41 +237,41 @@ impl Request<'_, '_> {
         let values = Values::new(self.values, "values")?;
         let per = self.per(py, map, &values)?;
         let shape = grid.into_iter().chain(values.shape()[1..].iter().copied()).collect();
-        Ok((per, self.numbers(&values)?, shape))
+        Ok((per, table_of(&values)?, shape))
     }
 
     /// The elements that the values belong to.
     pub fn per(&self, py: Python<'_>, map: &InverseMap, values: &Values<'_>) -> PyResult<PerElement> {
-        let asked = match self.per {
-            None => None,
-            Some("vertex") => Some(PerElement::Vertex),
-            Some("face") => Some(PerElement::Face),
-            Some(word) => {
-                let message = format!("per must be \"vertex\", \"face\" or None, but is \"{word}\"");
-                return Err(bad_option(message));
-            }
-        };
-        let length = values.shape().first().copied();
-        let fits = |per: &PerElement| length == Some(map.n_rows(*per));
-        let candidates = [PerElement::Vertex, PerElement::Face];
-        candidates.into_iter().filter(|per| asked.is_none_or(|asked| asked == *per)).find(fits).ok_or_else(
-            || {
-                let (n, m) = (map.n_vertices(), map.n_faces());
-                let expected = match asked {
-                    None => format!("of shape ({n}, …) per vertex or ({m}, …) per face"),
-                    Some(PerElement::Vertex) => format!("of shape ({n}, …), one row per vertex"),
-                    Some(PerElement::Face) => format!("of shape ({m}, …), one row per face"),
-                };
-                bad_array(py, "values", values.shape_words(), expected)
-            },
-        )
+        per_element(py, self.per, values, [map.n_vertices(), map.n_faces()])
     }
+}
 
-    /// The values as a table of real numbers.
-    pub fn numbers(&self, values: &Values<'_>) -> PyResult<Array2<f64>> {
-        let numbers = values.reals("real numbers; nearest=True takes labels of any kind")?;
-        let shape = values.shape();
-        let width = shape[1..].iter().product();
-        Ok(Array2::from_shape_vec((shape[0], width), numbers).expect("the shape is that of the values"))
-    }
+/// The elements that values belong to, of `n` vertices and `m` faces.
+pub fn per_element(
+    py: Python<'_>,
+    asked: Option<&str>,
+    values: &Values<'_>,
+    [n, m]: [usize; 2],
+) -> PyResult<PerElement> {
+    let asked = match asked {
+        None => None,
+        Some("vertex") => Some(PerElement::Vertex),
+        Some("face") => Some(PerElement::Face),
+        Some(word) => {
+            let message = format!("per must be \"vertex\", \"face\" or None, but is \"{word}\"");
+            return Err(bad_option(message));
+        }
+    };
+    let candidates = [(PerElement::Vertex, n), (PerElement::Face, m)];
+    let length = values.shape().first().copied();
+    let fits =
+        |(per, rows): &(PerElement, usize)| asked.is_none_or(|asked| asked == *per) && length == Some(*rows);
+    candidates.into_iter().find(fits).map(|(per, _)| per).ok_or_else(|| {
+        let expected = match asked {
+            None => format!("of shape ({n}, …) per vertex or ({m}, …) per face"),
+            Some(PerElement::Vertex) => format!("of shape ({n}, …), one row per vertex"),
+            Some(PerElement::Face) => format!("of shape ({m}, …), one row per face"),
+        };
+        bad_array(py, "values", values.shape_words(), expected)
+    })
 }

@@ -7,12 +7,13 @@ use authalic::{Margin, PackOptions, PlanarIsland, Rotation, Vertex};
 use numpy::PyArray1;
 use numpy::ndarray::{Array2, ArrayView2};
 use pyo3::prelude::*;
-use pyo3::{Borrowed, FromPyObject};
+use pyo3::{Borrowed, FromPyObject, IntoPyObjectExt};
 
 use crate::arrays::{Reals, from_array, frozen, real_table};
 use crate::errors::{bad_array, bad_option};
 use crate::indices::{index_table, labels};
 use crate::options::choice;
+use crate::provenance::{Call, fingerprint_of, options};
 use crate::result::{ResultBase, made, restorable};
 use crate::run::run;
 
@@ -109,6 +110,7 @@ pub fn pack(
 ) -> PyResult<Py<Packing>> {
     // 1. Arguments to plain data
     let began = Instant::now();
+    let kept = options!(py; island_of, margin, margin_unit, rotate = rotate.given(py)?, aspect)?;
     let uv = real_table::<2>(uv, "uv")?;
     let faces = index_table::<3>(faces, "faces", uv.nrows())?;
     let options = PackOptions {
@@ -118,10 +120,11 @@ pub fn pack(
     };
     let islands = islands(py, uv.view(), faces.view(), &labels(island_of, "island_of")?)?;
     // 2. The run
-    let (uv, packing) = run(py, progress, move |observer| {
+    let (uv, packing, input) = run(py, progress, move |observer| {
+        let input = fingerprint_of(uv.view(), faces.view());
         let shapes: Vec<_> = islands.iter().map(Island::shape).collect();
         let packing = authalic::pack(&shapes, &options, observer)?;
-        Ok((packed(uv, &islands, &packing), packing))
+        Ok((packed(uv, &islands, &packing), packing, input))
     })?;
     // 3. The result
     let packing = Packing {
@@ -130,7 +133,7 @@ pub fn pack(
         angles: frozen(PyArray1::from_iter(py, packing.places.iter().map(|place| place.angle))),
         seconds: began.elapsed().as_secs_f64(),
     };
-    made(py, packing, None)
+    made(py, packing, Call::new("pack", &kept, "uv", input).into())
 }
 
 /// A margin of a length in one of its units.
@@ -141,6 +144,17 @@ const UNITS: [(&str, Unit); 2] = [("square", Margin::OfSquare), ("islands", Marg
 /// A truth value, or "cardinal".
 #[derive(Clone, Copy)]
 pub struct Turns(Rotation);
+
+impl Turns {
+    /// What Python calls it.
+    fn given(self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        match self.0 {
+            Rotation::Fixed => false.into_py_any(py),
+            Rotation::Cardinal => "cardinal".into_py_any(py),
+            Rotation::Free => true.into_py_any(py),
+        }
+    }
+}
 
 impl<'py> FromPyObject<'_, 'py> for Turns {
     type Error = PyErr;

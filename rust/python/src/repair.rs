@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::repair`.
 
-use authalic::{CloseHandles, CloseHoles, Error, Keep, RepairOptions, Vertex};
-use numpy::ndarray::Array1;
-use numpy::{PyArray1, PyArray2};
+use authalic::{
+    CloseHandles, CloseHoles, Error, Face, Keep, PerElement, RepairCounts, RepairOptions, Side, Vertex,
+};
+use numpy::ndarray::{Array1, Array2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict};
+use pyo3::types::PyDict;
+use pyo3::{Borrowed, FromPyObject};
 
 use crate::arrays::{from_array, frozen};
-use crate::errors::bad_option;
+use crate::errors::{bad_option, internal};
 use crate::indices::from_indices;
+use crate::lookup::per_element;
 use crate::options::choice;
 use crate::provenance::{Call, Origin, options};
 use crate::result::{ResultBase, made, restorable};
 use crate::run::run;
-use crate::surface::{Given, Surface};
+use crate::surface::{Given, Surface, handle};
+use crate::values::{Values, from_values, table_of};
 
 /// A repaired surface, with maps between it and the mesh given. Taken wherever a Surface is.
 #[pyclass(frozen, get_all, extends = ResultBase, module = "authalic")]
@@ -81,6 +86,71 @@ restorable!(Repaired {
 
 #[pymethods]
 impl Repaired {
+    /// Carries values of the vertices or faces given to those of the surface.
+    ///
+    /// Copies have the values of their originals. An element that was added takes the mean of its neighbors, from the
+    /// surface around it inward. The other way values go by `vertex_to` and `face_to`.
+    ///
+    /// Parameters
+    /// ----------
+    /// values : array
+    ///     One row per vertex given, or per face given.
+    /// per : "vertex" or "face", optional
+    ///     The elements that `values` has a row for. Default: as its length says, vertices if both fit.
+    /// nearest : bool
+    ///     An added element takes the value of a neighbor, of any dtype, instead of a mean: for labels.
+    ///
+    /// Returns
+    /// -------
+    /// (n, ...) or (m, ...) array
+    ///     float64; with `nearest`, the dtype of `values`.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     The values have another shape, or without `nearest` are no real numbers.
+    /// ValueError
+    ///     An option is none of those above.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 0], [1, 1, 0], [0, 1, 0]]
+    /// >>> repaired = authalic.repair(points, [[0, 1, 2], [3, 4, 5]])
+    /// >>> repaired.carry([7, 8, 9, 7, 9, 5]).tolist()
+    /// [7.0, 8.0, 9.0, 5.0]
+    #[pyo3(signature = (values, *, per=None, nearest=false))]
+    fn carry(
+        &self,
+        py: Python<'_>,
+        values: &Bound<'_, PyAny>,
+        per: Option<&str>,
+        nearest: bool,
+    ) -> PyResult<Py<PyAny>> {
+        let values = Values::new(values, "values")?;
+        let given = [self.vertex_to.bind(py).len()?, self.face_to.bind(py).len()?];
+        let per = per_element(py, per, &values, given)?;
+        let core = self.core(py)?;
+        let rest = values.shape()[1..].to_vec();
+        let shaped = |n: usize| std::iter::once(n).chain(rest.iter().copied()).collect();
+        if nearest {
+            let rows = run(py, None, move |_| {
+                Ok(match per {
+                    PerElement::Vertex => core.nearest_vertices(),
+                    PerElement::Face => core.nearest_faces(),
+                })
+            })?;
+            return values.taken(1, &rows, shaped(rows.len()));
+        }
+        let numbers = table_of(&values)?;
+        let carried = run(py, None, move |_| match per {
+            PerElement::Vertex => core.values_on_vertices(numbers.view()),
+            PerElement::Face => core.values_on_faces(numbers.view()),
+        })?;
+        let n = carried.nrows();
+        from_values(py, carried.into_raw_vec_and_offset().0, shaped(n))
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         Ok(format!(
             "Repaired({} vertices, {} faces: {})",
@@ -89,6 +159,27 @@ impl Repaired {
             self.report.lines().filter(|line| !line.starts_with("result: ")).collect::<Vec<_>>().join("; "),
         ))
     }
+}
+
+impl Repaired {
+    /// The result as the core has it, without its counts.
+    fn core(&self, py: Python<'_>) -> PyResult<authalic::Repaired> {
+        let surface = handle(self.surface.bind(py).as_any());
+        Ok(authalic::Repaired {
+            surface: surface.ok_or_else(|| internal(py, "a repaired surface is none"))?,
+            vertex_of: to_options(py, &self.vertex_of, Vertex::new),
+            face_of: to_options(py, &self.face_of, Face::new),
+            vertex_to: to_options(py, &self.vertex_to, Vertex::new),
+            face_to: to_options(py, &self.face_to, Face::new),
+            counts: RepairCounts::default(),
+        })
+    }
+}
+
+/// Indices of int64, where −1 is none.
+fn to_options<T>(py: Python<'_>, list: &Py<PyArray1<i64>>, index: fn(usize) -> T) -> Vec<Option<T>> {
+    let list = list.bind(py).readonly();
+    list.as_array().iter().map(|&number| usize::try_from(number).ok().map(index)).collect()
 }
 
 /// Indices as int64, -1 where there is none.
@@ -112,9 +203,9 @@ fn from_options<T: Copy + Into<usize>>(py: Python<'_>, list: &[Option<T>]) -> Py
 ///     Positions, any unit. Or a Surface or another mesh object, without `faces`.
 /// faces : (m, 3) int array
 ///     Any triangles.
-/// merge : float or None
-///     Open edges whose ends are no farther apart than this are joined, in the unit of the vertices. Default 0: equal
-///     points. Points that only touch stay apart. None merges none.
+/// merge : float, bool or None
+///     Open edges whose ends are no farther apart than this are joined, in the unit of the vertices. Default 0, as True:
+///     equal points. Points that only touch stay apart. None and False merge none.
 /// close_holes : bool, int or "pinholes"
 ///     The holes to close: all, none, or those of at most so many edges. "pinholes" (default): those of at most 8 edges
 ///     whose area is at most a tenth of that of their piece.
@@ -123,7 +214,8 @@ fn from_options<T: Copy + Into<usize>>(py: Python<'_>, list: &[Option<T>]) -> Py
 /// close_handles : bool, float or "noise"
 ///     The handles to close: all, none (default), or those that a loop of at most this length opens, in the unit of the
 ///     vertices. The surface is cut along the loop and closed on both sides, which fills a tunnel or cuts a bridge,
-///     whichever loop is shorter. "noise": loops of at most a third of √area, with the area of their piece.
+///     whichever loop is shorter. "noise": loops of at most 16 mean edges of their piece, and of at most a tenth of
+///     √area, with its area.
 /// keep : {"all", "largest"}
 ///     The pieces to keep: all, or the one of the largest area.
 ///
@@ -135,7 +227,8 @@ fn from_options<T: Copy + Into<usize>>(py: Python<'_>, list: &[Option<T>]) -> Py
 /// Raises
 /// ------
 /// MeshError
-///     An array is empty or has another shape, an index is out of range, or no face has an area.
+///     An array is empty or has another shape, an index is out of range, or no face is left: all are without area or
+///     not finite.
 /// ValueError
 ///     An option is out of its range.
 ///
@@ -153,7 +246,7 @@ fn from_options<T: Copy + Into<usize>>(py: Python<'_>, list: &[Option<T>]) -> Py
 /// >>> repaired.vertex_to.tolist()
 /// [0, 1, 2, 0, 2, 3]
 #[pyfunction]
-#[pyo3(signature = (vertices, faces=None, *, merge=Some(0.0), close_holes=None, keep_outline=false,
+#[pyo3(signature = (vertices, faces=None, *, merge=Merge(Some(0.0)), close_holes=None, keep_outline=false,
                     close_handles=None, keep="all"),
        text_signature = "(vertices, faces=None, *, merge=0.0, close_holes=\"pinholes\", keep_outline=False, \
                          close_handles=False, keep=\"all\")")]
@@ -162,12 +255,13 @@ pub fn repair(
     py: Python<'_>,
     vertices: &Bound<'_, PyAny>,
     faces: Option<&Bound<'_, PyAny>>,
-    merge: Option<f64>,
+    merge: Merge,
     close_holes: Option<&Bound<'_, PyAny>>,
     keep_outline: bool,
     close_handles: Option<&Bound<'_, PyAny>>,
     keep: &str,
 ) -> PyResult<Py<Repaired>> {
+    let Merge(merge) = merge;
     let kept = options!(py; merge, close_holes, keep_outline, close_handles, keep)?;
     let options = RepairOptions {
         merge,
@@ -185,8 +279,8 @@ pub fn repair(
 }
 
 fn parse_holes(value: &Bound<'_, PyAny>) -> PyResult<CloseHoles> {
-    if let Ok(all) = value.cast::<PyBool>() {
-        return Ok(if all.is_true() { CloseHoles::All } else { CloseHoles::Off });
+    if let Ok(all) = value.extract::<bool>() {
+        return Ok(if all { CloseHoles::All } else { CloseHoles::Off });
     }
     if value.extract::<String>().is_ok_and(|word| word == "pinholes") {
         return Ok(CloseHoles::Pinholes);
@@ -197,8 +291,8 @@ fn parse_holes(value: &Bound<'_, PyAny>) -> PyResult<CloseHoles> {
 }
 
 fn parse_handles(value: &Bound<'_, PyAny>) -> PyResult<CloseHandles> {
-    if let Ok(all) = value.cast::<PyBool>() {
-        return Ok(if all.is_true() { CloseHandles::All } else { CloseHandles::Off });
+    if let Ok(all) = value.extract::<bool>() {
+        return Ok(if all { CloseHandles::All } else { CloseHandles::Off });
     }
     if value.extract::<String>().is_ok_and(|word| word == "noise") {
         return Ok(CloseHandles::Noise);
@@ -206,6 +300,24 @@ fn parse_handles(value: &Bound<'_, PyAny>) -> PyResult<CloseHandles> {
     value.extract::<f64>().map(CloseHandles::UpTo).map_err(|_| {
         bad_option(format!("close_handles must be a bool, a length ≥ 0 or \"noise\", but is {value}"))
     })
+}
+
+/// The distance within which points are merged; a truth value is none, though Python takes it for a number.
+#[derive(Clone, Copy)]
+pub struct Merge(Option<f64>);
+
+impl<'py> FromPyObject<'_, 'py> for Merge {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(is_wanted) = given.extract::<bool>() {
+            return Ok(Self(is_wanted.then_some(0.0)));
+        }
+        given.extract().map(Self).map_err(|_: PyErr| {
+            let found = given.repr().map_or_else(|_| "something else".into(), |repr| repr.to_string());
+            bad_option(format!("merge must be a length ≥ 0, a bool or None, but is {found}"))
+        })
+    }
 }
 
 /// A surface to map, repaired first where that was asked for.
@@ -218,6 +330,9 @@ pub struct Prepared {
 
 impl Prepared {
     /// A surface given with a density of its faces; repaired where there are options for that.
+    ///
+    /// # Errors
+    /// Those of the surface or of the repair.
     pub fn new(
         given: Given,
         density: Option<Array1<f64>>,
@@ -243,6 +358,35 @@ impl Prepared {
             return Err(Error::InvalidArray { name, found, expected: "vertices that stay".into() });
         }
         Ok(given.map(|vertex| repaired.vertex_to[vertex].map_or(0, Vertex::index)))
+    }
+
+    /// What a function makes of the surface; an error has the numbers of the vertices and faces given.
+    pub fn mapped<T>(&self, map: impl FnOnce(&authalic::Surface) -> Result<T, Error>) -> Result<T, Error> {
+        map(&self.surface).map_err(|error| self.in_given_numbers(error))
+    }
+
+    /// An error about the surface with the numbers of the vertices and faces given.
+    pub fn in_given_numbers(&self, error: Error) -> Error {
+        match &self.repaired {
+            Some(repaired) => repaired.in_given_numbers(error),
+            None => error,
+        }
+    }
+
+    /// The vertices that landmarks became.
+    pub fn landmarks(&self, side: Side, given: Vec<usize>) -> Result<Vec<usize>, Error> {
+        self.repaired.as_ref().map_or(Ok(given.clone()), |repaired| repaired.landmarks(side, &given))
+    }
+
+    /// The paths that curves became.
+    pub fn curves(&self, side: Side, given: Vec<Vec<usize>>) -> Result<Vec<Vec<usize>>, Error> {
+        self.repaired.as_ref().map_or(Ok(given.clone()), |repaired| repaired.curves(side, &given))
+    }
+
+    /// Values (n, k) of the vertices.
+    pub fn signals(&self, side: Side, given: Array2<f64>) -> Result<Array2<f64>, Error> {
+        let Some(repaired) = &self.repaired else { return Ok(given) };
+        repaired.values_on_vertices(given.view()).map_err(|error| error.of_surface(side))
     }
 }
 

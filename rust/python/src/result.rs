@@ -53,6 +53,14 @@ impl<'py> State<'py> {
         })
     }
 
+    /// The attribute as a value, of a file that may be older than the attribute.
+    pub fn optional<T>(&self, name: &str) -> PyResult<Option<T>>
+    where
+        T: for<'a> FromPyObject<'a, 'py>,
+    {
+        if self.0.contains(name)? { self.get(name) } else { Ok(None) }
+    }
+
     /// The attribute `status`.
     pub fn status(&self) -> PyResult<&'static str> {
         let word: String = self.get("status")?;

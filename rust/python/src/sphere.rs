@@ -5,20 +5,19 @@ use std::sync::Arc;
 
 use authalic::{
     Grid, Icosphere, InverseMap, LineSearch, Outside, RefinedFaces, RepairOptions, SphereFaces,
-    SphereMapOptions, SphereMethod,
+    SphereFilling, SphereMapOptions, SphereMethod,
 };
-use numpy::ndarray::{ArrayView2, Axis, concatenate};
+use numpy::ndarray::{ArrayView2, Axis, Slice, concatenate};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::arrays::{Reals, from_array, frozen, real_table, reals};
 use crate::distortion::Distortion;
 use crate::errors::{bad_option, to_python};
 use crate::indices::{from_index_list, from_indices, index_table, narrowed};
 use crate::layout::{Arguments, Layout, layout};
-use crate::lookup::{
-    Beyond, Conservative, Invertible, Located, Lookup, Request, grid_shape, image_of, locate,
-};
+use crate::lookup::{Beyond, Conservative, Invertible, Located, Lookup, Request, Shape, image_of, locate};
 use crate::options::{history, parse_iterations};
 use crate::provenance::{Call, Origin, options};
 use crate::repair::{Prepared, Repaired, check_no_start};
@@ -168,13 +167,18 @@ impl Restorable for SphereMap {
         "repaired",
         "seconds",
         "_targets",
+        "_filling",
     ];
 
     fn restored(state: &State<'_>) -> PyResult<Self> {
         let (positions, faces) = (state.object("positions")?, state.object("faces")?);
         let refinement: Option<Py<Refinement>> = state.get("refinement")?;
         let targets: Vec<f64> = reals(&state.object("_targets")?, "_targets")?.to_vec();
-        let sphere = laid_out(&positions, &faces, refinement.as_ref().map(Py::get), targets)?;
+        let mut sphere = laid_out(&positions, &faces, refinement.as_ref().map(Py::get), targets)?;
+        if let Some(filling) = state.optional::<Bound<'_, PyDict>>("_filling")? {
+            let filling = filling_of(State(filling), &sphere)?;
+            sphere = sphere.filled(&filling).map_err(|error| to_python(state.py(), &error))?;
+        }
         Ok(Self {
             positions: state.get("positions")?,
             faces: state.get("faces")?,
@@ -211,7 +215,18 @@ fn laid_out(
         }
     };
     let image = authalic::Surface::new(points, faces).map_err(|error| to_python(py, &error))?;
-    Ok(SphereFaces { image, targets, face_of, n_vertices })
+    Ok(SphereFaces { image, targets, face_of, n_vertices, n_filling: 0 })
+}
+
+/// What fills the holes of a saved map.
+fn filling_of(state: State<'_>, map: &SphereFaces) -> PyResult<SphereFilling> {
+    let positions = real_table::<3>(&state.object("positions")?, "positions")?;
+    let n_points = map.n_vertices + positions.nrows();
+    Ok(SphereFilling {
+        faces: index_table::<3>(&state.object("faces")?, "faces", n_points)?,
+        targets: reals(&state.object("targets")?, "targets")?.to_vec(),
+        positions,
+    })
 }
 
 impl Invertible for SphereMap {
@@ -241,7 +256,24 @@ impl SphereMap {
     /// (m,) or (m',) float64: the target measure of each face of the map or of its refinement, for saved maps.
     #[getter]
     fn _targets(&self, py: Python<'_>) -> Py<PyArray1<f64>> {
-        frozen(PyArray1::from_slice(py, &self.sphere.targets))
+        frozen(PyArray1::from_slice(py, &self.sphere.targets[..self.sphere.n_laid_out()]))
+    }
+
+    /// What fills the holes of an open surface on the sphere, for saved maps: a dict, or None.
+    #[getter]
+    fn _filling<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let (sphere, first) = (&self.sphere, self.sphere.n_laid_out());
+        if sphere.n_filling == 0 {
+            return Ok(None);
+        }
+        let filling = PyDict::new(py);
+        let positions = sphere.image.vertices();
+        let inside = positions.slice_axis(Axis(0), Slice::from(sphere.n_vertices..)).to_owned();
+        filling.set_item("positions", from_array(py, inside))?;
+        let faces = sphere.image.faces();
+        filling.set_item("faces", from_indices(py, faces.slice_axis(Axis(0), Slice::from(first..))))?;
+        filling.set_item("targets", frozen(PyArray1::from_slice(py, &sphere.targets[first..])))?;
+        Ok(Some(filling))
     }
 
     /// Finds the places on the surface whose images are given points.
@@ -403,20 +435,23 @@ impl SphereMap {
         &self,
         py: Python<'_>,
         values: &Bound<'_, PyAny>,
-        shape: (i64, i64),
+        shape: Shape,
         per: Option<&str>,
         nearest: bool,
         conservative: Conservative,
     ) -> PyResult<Py<PyAny>> {
-        let [rows, columns] = grid_shape(shape)?;
+        let Shape([rows, columns]) = shape;
         let request = Request { values, per, nearest, beyond: Beyond::new(None)? };
         request.in_cells(py, self.inverse(py)?, Grid::Equirectangular { rows, columns }, conservative)
     }
 
     /// Lays values out on a grid whose cells all have one area (Lambert's cylindrical projection).
     ///
-    /// Rows are equal steps of the height z, from +1 down to −1; columns are equal steps of longitude, as for
-    /// `equirectangular`. A plain mean over the cells is the mean over the sphere.
+    /// Row 0 lies at the north pole (+z), and column 0 at the longitude −180°, counted from +x towards +y. Rows are
+    /// equal steps of the height z, from +1 down to −1, and columns of longitude: the center of cell (i, j) has the
+    /// height 1 − (2 i + 1)/n, and the longitude (j + 1/2) 180°/n − 180°. All cells have the area 2π/n², so that a plain
+    /// mean over them is the mean over the sphere. Other grids of points, such as HEALPix, go by `sample`:
+    /// `ball.sample(values, np.transpose(healpy.pix2vec(nside, np.arange(12 * nside**2))))`.
     ///
     /// Parameters
     /// ----------
@@ -464,7 +499,10 @@ impl SphereMap {
         nearest: bool,
         conservative: Conservative,
     ) -> PyResult<Py<PyAny>> {
-        let [rows, columns] = grid_shape((n, n.saturating_mul(2)))?;
+        let Some(rows) = usize::try_from(n).ok().filter(|&rows| rows > 0) else {
+            return Err(bad_option(format!("n must be ≥ 1, but is {n}")));
+        };
+        let columns = rows.saturating_mul(2);
         let request = Request { values, per, nearest, beyond: Beyond::new(None)? };
         request.in_cells(py, self.inverse(py)?, Grid::EqualArea { rows, columns }, conservative)
     }
@@ -524,7 +562,8 @@ impl SphereMap {
         nearest: bool,
         conservative: Conservative,
     ) -> PyResult<(Py<PyAny>, Py<Surface>)> {
-        let level = usize::try_from(level).unwrap_or(usize::MAX);
+        let level = usize::try_from(level)
+            .map_err(|_| bad_option(format!("level must be 0 to 10, but is {level}")))?;
         let (icosphere, surface) = run(py, None, move |_| {
             let icosphere = Icosphere::new(level)?;
             let surface = icosphere.surface()?;
@@ -540,7 +579,7 @@ impl SphereMap {
     /// A vertex is moved onto each singular point of the layout, the images of the faces are joined in the plane, and
     /// Levenberg–Marquardt steps even out the areas, which straight edges change near poles and across creases. Exact
     /// predicates on the rounded points decide that no face is folded. A refined map is laid out with the parts of its
-    /// faces.
+    /// faces. Holes that `fill_holes` has filled for the map are so for the layout too, and open in the result.
     ///
     /// Parameters
     /// ----------
@@ -577,7 +616,8 @@ impl SphereMap {
     /// Raises
     /// ------
     /// MeshError
-    ///     An array does not fit. Nothing is computed.
+    ///     An array does not fit, or the map has holes of which it does not know how they were filled, as the rough map
+    ///     of a registration by curves. Nothing is computed.
     /// ValueError
     ///     An option is out of its range.
     /// SolverError
@@ -745,7 +785,6 @@ pub fn sphere_map(
     let (mut map, prepared, sphere, input) = run(py, progress, move |observer| {
         let input = given.fingerprint();
         let prepared = Prepared::new(given, density, repair.as_ref())?;
-        let surface = &prepared.surface;
         let density = prepared.density.as_ref().map(|density| density.view());
         let initial = initial.as_ref().map(|initial| initial.view());
         let options = SphereMapOptions {
@@ -761,8 +800,11 @@ pub fn sphere_map(
             fill_holes,
             unfold,
         };
-        let map = authalic::sphere_map(surface, &options, observer)?;
-        let sphere = map.faces_on_sphere(surface.oriented_faces()?.view())?;
+        let (map, sphere) = prepared.mapped(|surface| {
+            let map = authalic::sphere_map(surface, &options, observer)?;
+            let sphere = map.faces_on_sphere(surface.oriented_faces()?.view())?;
+            Ok((map, sphere))
+        })?;
         Ok((map, prepared, sphere, input))
     })?;
     // 3. The result

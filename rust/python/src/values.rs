@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Data of any kind and shape, as registrations carry it.
 
+use numpy::ndarray::Array2;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -77,6 +78,14 @@ impl Values<'_> {
         taken.set_item(PyArray1::from_vec(py, missing), fill)?;
         Ok(taken.call_method1(intern!(py, "reshape"), (PyTuple::new(py, shape)?,))?.unbind())
     }
+}
+
+/// Values as a table of real numbers, one row for each of the first axis.
+pub fn table_of(values: &Values<'_>) -> PyResult<Array2<f64>> {
+    let numbers = values.reals("real numbers; nearest=True takes labels of any kind")?;
+    let shape = values.shape();
+    let width = shape[1..].iter().product();
+    Ok(Array2::from_shape_vec((shape[0], width), numbers).expect("the shape is that of the values"))
 }
 
 /// Numbers in C order as an array of any shape.

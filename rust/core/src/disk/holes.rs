@@ -6,7 +6,7 @@
 //! dropped from the result.
 
 use crate::error::Error;
-use crate::filling::{apex_of, spanned_area};
+use crate::filling::{apex_of, cone, spanned_area};
 use crate::mesh::{TriangleMesh, Vertex};
 use crate::vector::{Vector3, coordinates};
 
@@ -51,10 +51,6 @@ pub(crate) fn closed(mesh: &TriangleMesh) -> Result<TriangleMesh, Error> {
 /// Fills one hole by a fan to a new vertex.
 fn fill(hole: &[Vertex], points: &mut Vec<Vector3>, faces: &mut Vec<[Vertex; 3]>) {
     let corners: Vec<Vector3> = hole.iter().map(|&vertex| points[vertex]).collect();
-    let apex = Vertex::new(points.len());
+    faces.extend(cone(hole, Vertex::new(points.len())));
     points.push(apex_of(&corners));
-    for k in 0..hole.len() {
-        // the loop has the surface on its left, the fan lies on its right
-        faces.push([hole[(k + 1) % hole.len()], hole[k], apex]);
-    }
 }

@@ -66,6 +66,22 @@ pub enum CurveError {
         n_vertices: usize,
     },
 
+    /// A vertex of a curve is none of the repaired mesh.
+    #[error(
+        "{side}_curves: curve {curve} is no part of the repaired surface at place {place} (vertex {vertex}): \
+         choose vertices of the piece that it keeps"
+    )]
+    Dropped {
+        /// The surface.
+        side: Side,
+        /// The curve.
+        curve: usize,
+        /// The place in it, from 0.
+        place: usize,
+        /// The vertex there.
+        vertex: usize,
+    },
+
     /// Two consecutive vertices of a curve are not joined by an edge.
     #[error(
         "{}: curve {curve} leaves the edges of the mesh after place {place}: no edge joins vertices {vertices}; \
@@ -250,7 +266,7 @@ impl CurveError {
             Self::Counts { .. } => ErrorKind::CurveCounts,
             Self::NoCurves => ErrorKind::NoCurves,
             Self::Short { .. } => ErrorKind::ShortCurve,
-            Self::OutOfRange { .. } => ErrorKind::IndexOutOfRange,
+            Self::OutOfRange { .. } | Self::Dropped { .. } => ErrorKind::IndexOutOfRange,
             Self::OffEdges { .. } => ErrorKind::CurveOffEdges,
             Self::MeetsItself { .. } => ErrorKind::CurveMeetsItself,
             Self::Meet { .. } => ErrorKind::CurvesMeet,
@@ -268,6 +284,18 @@ impl CurveError {
         }
     }
 
+    /// The error with other numbers for the vertices at fault.
+    pub(super) fn renumbered(mut self, vertex_of: &dyn Fn(usize) -> usize) -> Self {
+        if let Self::OffEdges { vertices, .. }
+        | Self::MeetsItself { vertices, .. }
+        | Self::Meet { vertices, .. }
+        | Self::OnBoundary { vertices, .. } = &mut self
+        {
+            vertices.renumber(vertex_of);
+        }
+        self
+    }
+
     /// The surface on which the curves are at fault, where it is one of two.
     pub fn side(&self) -> Option<Side> {
         match self {
@@ -279,7 +307,7 @@ impl CurveError {
             | Self::OnBoundary { side, .. }
             | Self::NotClosed { side, .. }
             | Self::BoundsOneSide { side, .. } => *side,
-            Self::Sides { side, .. } => Some(*side),
+            Self::Sides { side, .. } | Self::Dropped { side, .. } => Some(*side),
             _ => None,
         }
     }
@@ -289,6 +317,7 @@ impl CurveError {
         match self {
             Self::Short { curve, .. }
             | Self::OutOfRange { curve, .. }
+            | Self::Dropped { curve, .. }
             | Self::OffEdges { curve, .. }
             | Self::MeetsItself { curve, .. }
             | Self::OnBoundary { curve, .. }

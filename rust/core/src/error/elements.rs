@@ -34,6 +34,11 @@ impl Elements {
         (count > 0).then(|| Self { first: named.concat(), count, arity: ARITY })
     }
 
+    /// Gives the elements other numbers.
+    pub(super) fn renumber(&mut self, number_of: &dyn Fn(usize) -> usize) {
+        self.first.iter_mut().for_each(|index| *index = number_of(*index));
+    }
+
     /// The elements as a phrase: `face 3`, `2 edges ((0, 4), (4, 7))`, `12 vertices (0, 1, 2, …)`.
     pub(super) fn named(&self, noun: &str) -> String {
         match self.count {

@@ -50,6 +50,21 @@ pub enum LandmarkError {
         n_vertices: usize,
     },
 
+    /// A landmark is no vertex of the repaired mesh.
+    #[error(
+        "{side}_landmarks are no part of the repaired surface at {} (vertex {vertex}): \
+         choose vertices of the piece that it keeps",
+        .pairs.named("pair")
+    )]
+    Dropped {
+        /// The surface that they are on.
+        side: Side,
+        /// The pairs at fault.
+        pairs: Elements,
+        /// The vertex of the first.
+        vertex: usize,
+    },
+
     /// Two pairs have the same vertex.
     #[error(
         "{side}_landmarks repeat vertex {vertex} of pair {first} at {}: remove the repeated pairs",
@@ -88,19 +103,28 @@ impl LandmarkError {
         match self {
             Self::Counts { .. } => ErrorKind::LandmarkCounts,
             Self::TooFew { .. } => ErrorKind::TooFewLandmarks,
-            Self::OutOfRange { .. } => ErrorKind::IndexOutOfRange,
+            Self::OutOfRange { .. } | Self::Dropped { .. } => ErrorKind::IndexOutOfRange,
             Self::Repeated { .. } => ErrorKind::RepeatedLandmark,
             Self::OnBoundary { .. } => ErrorKind::LandmarkOnBoundary,
         }
+    }
+
+    /// The error with other numbers for vertices.
+    pub(super) fn renumbered(mut self, vertex_of: &dyn Fn(usize) -> usize) -> Self {
+        if let Self::Repeated { vertex, .. } | Self::OnBoundary { vertex, .. } = &mut self {
+            *vertex = vertex_of(*vertex);
+        }
+        self
     }
 
     /// The surface whose landmarks are at fault.
     pub fn side(&self) -> Option<Side> {
         match self {
             Self::Counts { .. } | Self::TooFew { .. } => None,
-            Self::OutOfRange { side, .. } | Self::Repeated { side, .. } | Self::OnBoundary { side, .. } => {
-                Some(*side)
-            }
+            Self::OutOfRange { side, .. }
+            | Self::Dropped { side, .. }
+            | Self::Repeated { side, .. }
+            | Self::OnBoundary { side, .. } => Some(*side),
         }
     }
 
@@ -109,6 +133,7 @@ impl LandmarkError {
         match self {
             Self::Counts { .. } | Self::TooFew { .. } => None,
             Self::OutOfRange { pairs, .. }
+            | Self::Dropped { pairs, .. }
             | Self::Repeated { pairs, .. }
             | Self::OnBoundary { pairs, .. } => Some(pairs),
         }

@@ -62,6 +62,17 @@ pub enum MapError {
         vertices: Elements,
     },
 
+    /// A map onto the sphere has holes, and nothing says what fills them.
+    #[error(
+        "the map onto the sphere has holes, at {}, around which a layout would lie over itself: \
+         map the surface anew with its holes filled for the time of the map, or close them by a repair before",
+        .vertices.named("vertex")
+    )]
+    OpenOnSphere {
+        /// The vertices at the holes.
+        vertices: Elements,
+    },
+
     /// A boundary cannot go onto a rectangle.
     #[error("no rectangle fits the boundary at {}: {reason}", .vertices.named("vertex"))]
     NoRectangle {
@@ -109,10 +120,33 @@ impl MapError {
             Self::InitialBoundary { .. } => ErrorKind::InitialBoundary,
             Self::InitialSphere { .. } => ErrorKind::InitialSphere,
             Self::NoDirection { .. } => ErrorKind::NoDirection,
+            Self::OpenOnSphere { .. } => ErrorKind::OpenSurface,
             Self::NoRectangle { .. } => ErrorKind::NoRectangle,
             Self::HeldFolded { .. } => ErrorKind::FixedFold,
             Self::OutlineFolds { .. } => ErrorKind::OutlineFold,
         }
+    }
+
+    /// The error with other numbers for the vertices and faces at fault.
+    pub(super) fn renumbered(
+        mut self,
+        vertex_of: &dyn Fn(usize) -> usize,
+        face_of: &dyn Fn(usize) -> usize,
+    ) -> Self {
+        match &mut self {
+            Self::NonFinite { vertices, .. }
+            | Self::InitialBoundary { vertices, .. }
+            | Self::InitialSphere { vertices, .. }
+            | Self::NoDirection { vertices, .. }
+            | Self::OpenOnSphere { vertices }
+            | Self::NoRectangle { vertices, .. } => vertices.renumber(vertex_of),
+            Self::Density { faces, .. } | Self::OutlineFolds { faces, .. } => faces.renumber(face_of),
+            Self::HeldFolded { faces, vertices } => {
+                faces.renumber(face_of);
+                vertices.renumber(vertex_of);
+            }
+        }
+        self
     }
 
     /// The surface that the map is of, where it is one of two.
@@ -130,6 +164,7 @@ impl MapError {
             | Self::InitialBoundary { vertices, .. }
             | Self::InitialSphere { vertices, .. }
             | Self::NoDirection { vertices, .. }
+            | Self::OpenOnSphere { vertices }
             | Self::NoRectangle { vertices, .. } => vertices,
             Self::Density { faces, .. }
             | Self::HeldFolded { faces, .. }

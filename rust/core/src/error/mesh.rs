@@ -18,6 +18,13 @@ pub enum MeshError {
     #[error("the mesh has no faces: it needs at least one triangle")]
     NoFaces,
 
+    /// A repair has dropped every face.
+    #[error(
+        "the mesh has no faces that a repair can keep: each is without area, or at a vertex that is NaN or infinite; \
+         check the vertices, and the distance within which points are merged"
+    )]
+    NoFaceLeft,
+
     /// More faces than 32-bit corner indices can number.
     #[error(
         "the mesh has {found} faces, more than the {limit} that can be numbered: simplify it or split it"
@@ -126,6 +133,17 @@ pub enum MeshError {
         coincident: usize,
     },
 
+    /// A repair was to keep the main piece, and no piece has more than half of the area.
+    #[error(
+        "the mesh is {} separate pieces, first faces {faces}, and none has more than half of the area: \
+         merge points within a distance if they belong together, keep the largest piece, or map each by itself",
+        .faces.count
+    )]
+    NoMainPiece {
+        /// The lowest face of each piece.
+        faces: Elements,
+    },
+
     /// A disk was asked for and the surface has no boundary.
     #[error(
         "the surface is closed (genus {genus}), a disk needs a boundary: mark seams and cut it open{}",
@@ -222,7 +240,7 @@ impl MeshError {
     pub fn kind(&self) -> ErrorKind {
         match self {
             Self::NoVertices => ErrorKind::NoVertices,
-            Self::NoFaces => ErrorKind::NoFaces,
+            Self::NoFaces | Self::NoFaceLeft => ErrorKind::NoFaces,
             Self::TooManyFaces { .. } => ErrorKind::TooManyFaces,
             Self::NonFinite { .. } => ErrorKind::NotFinite,
             Self::IndexOutOfRange { .. } => ErrorKind::IndexOutOfRange,
@@ -233,7 +251,7 @@ impl MeshError {
             Self::NotOrientable { .. } => ErrorKind::NotOrientable,
             Self::NonManifoldVertices { .. } => ErrorKind::NonManifoldVertex,
             Self::UnreferencedVertices { .. } => ErrorKind::LooseVertex,
-            Self::SeveralComponents { .. } => ErrorKind::SeveralComponents,
+            Self::SeveralComponents { .. } | Self::NoMainPiece { .. } => ErrorKind::SeveralComponents,
             Self::ClosedSurface { .. } => ErrorKind::ClosedSurface,
             Self::OpenSurface { .. } => ErrorKind::OpenSurface,
             Self::HasHandles { .. } | Self::SphereHasHandles { .. } | Self::GenusNotZero { .. } => {
@@ -243,6 +261,29 @@ impl MeshError {
             Self::SeamOutOfRange { .. } => ErrorKind::IndexOutOfRange,
             Self::SeamNotEdge { .. } => ErrorKind::SeamNotEdge,
         }
+    }
+
+    /// The error with other numbers for the vertices and faces at fault.
+    pub(super) fn renumbered(
+        mut self,
+        vertex_of: &dyn Fn(usize) -> usize,
+        face_of: &dyn Fn(usize) -> usize,
+    ) -> Self {
+        match &mut self {
+            Self::NonFinite { vertices }
+            | Self::NonManifoldVertices { vertices }
+            | Self::UnreferencedVertices { vertices }
+            | Self::SeveralBoundaries { vertices, .. }
+            | Self::OpenSurface { vertices, .. } => vertices.renumber(vertex_of),
+            Self::NonManifoldEdges { edges } | Self::NotOrientable { edges } => edges.renumber(vertex_of),
+            Self::RepeatedVertex { faces }
+            | Self::DuplicateFaces { faces }
+            | Self::ZeroArea { faces }
+            | Self::NoMainPiece { faces }
+            | Self::SeveralComponents { faces, .. } => faces.renumber(face_of),
+            _ => {}
+        }
+        self
     }
 
     /// The elements at fault, where the error has any.
@@ -257,6 +298,7 @@ impl MeshError {
             | Self::RepeatedVertex { faces }
             | Self::DuplicateFaces { faces }
             | Self::ZeroArea { faces }
+            | Self::NoMainPiece { faces }
             | Self::SeveralComponents { faces, .. } => Some(faces),
             Self::NonManifoldEdges { edges } | Self::NotOrientable { edges } => Some(edges),
             Self::SeamOutOfRange { seams, .. } | Self::SeamNotEdge { seams } => Some(seams),

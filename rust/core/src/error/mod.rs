@@ -191,6 +191,27 @@ impl Error {
         }
     }
 
+    /// The error with other numbers for the vertices and faces at fault, as where they are those of a changed mesh.
+    pub(crate) fn renumbered(
+        self,
+        vertex_of: &dyn Fn(usize) -> usize,
+        face_of: &dyn Fn(usize) -> usize,
+    ) -> Self {
+        match self {
+            Self::Mesh(error) => error.renumbered(vertex_of, face_of).into(),
+            Self::Map(error) => error.renumbered(vertex_of, face_of).into(),
+            Self::Landmarks(error) => error.renumbered(vertex_of).into(),
+            Self::Curves(error) => error.renumbered(vertex_of).into(),
+            Self::Numerics(error) => error.with_faces(face_of).into(),
+            Self::InvalidRows { name, found, expected, row: "vertex", mut rows } => {
+                rows.renumber(vertex_of);
+                Self::InvalidRows { name, found, expected, row: "vertex", rows }
+            }
+            Self::OfSurface { side, error } => error.renumbered(vertex_of, face_of).of_surface(side),
+            error => error,
+        }
+    }
+
     /// The error as one about one of two surfaces; a cancelled run is nobody's fault.
     pub fn of_surface(self, side: Side) -> Self {
         match self {

@@ -4,13 +4,11 @@
 //!
 //! Cost: one sparse LU with some three unknowns per vertex of the hole.
 
-use std::iter::successors;
-
 use sprs::TriMat;
 
 use super::apex::apex_of;
 use crate::mesh::Vertex;
-use crate::mesh::geometry::area;
+use crate::mesh::geometry::{area, edge_lengths};
 use crate::sparse::solve_general;
 use crate::vector::Vector3;
 
@@ -20,6 +18,9 @@ const COARSER: f64 = 0.7;
 /// Rings of at most so many vertices have the middle inside.
 const INNERMOST: usize = 8;
 
+/// The least number of vertices of a ring.
+const FEWEST: usize = 5;
+
 /// Faces of a filling are no smaller than this, relative to the square of their longest edge.
 const THINNEST: f64 = 1e-3;
 
@@ -27,35 +28,15 @@ const THINNEST: f64 = 1e-3;
 pub(crate) fn membrane(hole: &[Vertex], points: &mut Vec<Vector3>, faces: &mut Vec<[Vertex; 3]>) {
     let (n_points, n_faces) = (points.len(), faces.len());
     // 1. Rings that grow coarser, and the middle
-    let counts = successors(Some(hole.len()), |&count| {
-        (count > INNERMOST).then(|| ((COARSER * count as f64).round() as usize).max(5))
-    });
-    let mut rings: Vec<Vec<Vertex>> = Vec::new();
-    let mut next = n_points;
-    for count in counts {
-        rings.push(if rings.is_empty() {
-            hole.to_vec()
-        } else {
-            (next..next + count).map(Vertex::new).collect()
-        });
-        next += if rings.len() == 1 { 0 } else { count };
-    }
-    let middle = Vertex::new(next);
+    let rings = rings(hole, n_points);
     rings.windows(2).for_each(|pair| stitch(&pair[0], &pair[1], faces));
-    let innermost = rings.last().expect("the hole is the first");
-    for k in 0..innermost.len() {
-        faces.push([innermost[(k + 1) % innermost.len()], innermost[k], middle]);
-    }
+    let n_added = 1 + rings[1..].iter().map(Vec::len).sum::<usize>();
+    let middle = Vertex::new(n_points + n_added - 1);
+    faces.extend(cone(&rings[rings.len() - 1], middle));
     // 2. Each vertex the mean of its neighbors
-    let places = places(n_points, next + 1 - n_points, &faces[n_faces..], points);
-    if let Some(places) = places {
+    if let Some(places) = places(n_points, n_added, &faces[n_faces..], points) {
         points.extend(places);
-        let is_fat = |face: &[Vertex; 3]| {
-            let [a, b, c] = face.map(|vertex| points[vertex]);
-            let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-            area([a, b, c].map(|x| x * (1.0 / longest))) > THINNEST
-        };
-        if faces[n_faces..].iter().all(is_fat) {
+        if faces[n_faces..].iter().all(|face| is_fat(face.map(|vertex| points[vertex]))) {
             return;
         }
     }
@@ -64,8 +45,31 @@ pub(crate) fn membrane(hole: &[Vertex], points: &mut Vec<Vector3>, faces: &mut V
     faces.truncate(n_faces);
     let rim: Vec<Vector3> = hole.iter().map(|&vertex| points[vertex]).collect();
     points.push(apex_of(&rim));
-    let apex = Vertex::new(n_points);
-    faces.extend((0..hole.len()).map(|k| [hole[(k + 1) % hole.len()], hole[k], apex]));
+    faces.extend(cone(hole, Vertex::new(n_points)));
+}
+
+/// The faces between a loop, which has the surface on its left, and the tip of a cone on its right.
+pub(crate) fn cone(hole: &[Vertex], apex: Vertex) -> impl Iterator<Item = [Vertex; 3]> {
+    (0..hole.len()).map(move |k| [hole[(k + 1) % hole.len()], hole[k], apex])
+}
+
+/// Whether a face is no thinner than those of fillings may be.
+pub(crate) fn is_fat(corners: [Vector3; 3]) -> bool {
+    let longest = edge_lengths(corners).into_iter().fold(0.0, f64::max);
+    area(corners.map(|x| x * (1.0 / longest))) > THINNEST
+}
+
+/// The hole and the rings inside, of vertices numbered from `first`.
+fn rings(hole: &[Vertex], first: usize) -> Vec<Vec<Vertex>> {
+    let mut rings = vec![hole.to_vec()];
+    let mut next = first;
+    let mut count = hole.len();
+    while count > INNERMOST {
+        count = ((COARSER * count as f64).round() as usize).max(FEWEST);
+        rings.push((next..next + count).map(Vertex::new).collect());
+        next += count;
+    }
+    rings
 }
 
 /// The faces between a ring and the next one inside. The ring has the surface on its left and these on its right.

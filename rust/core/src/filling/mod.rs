@@ -5,4 +5,4 @@ mod apex;
 mod membrane;
 
 pub(crate) use apex::{apex_of, spanned_area};
-pub(crate) use membrane::membrane;
+pub(crate) use membrane::{cone, is_fat, membrane};

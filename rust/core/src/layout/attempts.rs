@@ -56,6 +56,8 @@ const OF_THE_MAP: f64 = 1.0;
 pub(super) struct Run<'a, P> {
     faces: &'a [[Vertex; 3]],
     face_of: Option<&'a [usize]>,
+    /// The number of faces that are laid out; the others fill holes.
+    n_laid_out: usize,
     /// (n, 3): points of the unit sphere in the coordinates of the projection.
     points: Vec<Vector3>,
     corners: VertexCorners,
@@ -93,6 +95,7 @@ impl<'a, P: Projection> Run<'a, P> {
         Ok(Self {
             faces,
             face_of: sphere.face_of.as_deref(),
+            n_laid_out: sphere.n_laid_out(),
             points: parallel::map(positions.len(), |vertex| turned(positions[vertex])),
             corners: VertexCorners::new(positions.len(), faces),
             polygons: Polygons::new(faces, labels.as_deref()),
@@ -129,13 +132,25 @@ impl<'a, P: Projection> Run<'a, P> {
                 }
             }
         }
-        let mut of_map: Vec<usize> = match self.face_of {
-            Some(face_of) => fewest.iter().map(|&part| face_of[part]).collect(),
-            None => fewest,
-        };
+        let mut of_map = self.laid_out_beside(&fewest);
+        if let Some(face_of) = self.face_of {
+            of_map.iter_mut().for_each(|face| *face = face_of[*face]);
+        }
         of_map.dedup();
         let faces = Elements::collect(of_map).expect("a layout without folds would have been returned");
         Err(NumericsError::LayoutFolds { faces, precision: self.precision.as_str() }.into())
+    }
+
+    /// The faces of a list that are laid out; where all of them fill holes, the faces around the holes.
+    fn laid_out_beside(&self, faces: &[usize]) -> Vec<usize> {
+        let laid_out: Vec<usize> = faces.iter().copied().filter(|&face| face < self.n_laid_out).collect();
+        if !laid_out.is_empty() {
+            return laid_out;
+        }
+        let (given, filling) = self.faces.split_at(self.n_laid_out);
+        let mut fills = vec![false; self.points.len()];
+        filling.as_flattened().iter().for_each(|&vertex| fills[vertex] = true);
+        (0..given.len()).filter(|&face| given[face].iter().any(|&vertex| fills[vertex])).collect()
     }
 
     /// The number of folded faces above which neither unfolding nor another choice of vertices is tried.
@@ -211,7 +226,7 @@ impl<'a, P: Projection> Run<'a, P> {
         if status != Status::Cancelled && !observer.progress(1.0, "Done") {
             status = Status::Cancelled;
         }
-        let Split { points, faces, vertex_of } = split;
+        let Split { points, faces, vertex_of } = split.first_faces(self.n_laid_out);
         Layout {
             points: from_rows(points),
             faces: index_array(&faces),

@@ -11,7 +11,9 @@
 //! 4. Vertices on the seam become several points ([`seam`]). Exact predicates decide, on points in the precision asked
 //!    for, what is folded ([`certificate`]): there is a layout without folds or an error.
 //!
-//! Input: a map of a closed surface without folds. Cost: a few hundred passes over the faces near singular points and
+//! Holes stay filled until the end, so that the faces around them keep apart.
+//!
+//! Input: a map without folds of a closed surface, or of one whose holes were filled. Cost: a few hundred passes over the faces near singular points and
 //! creases, an eighth of the map's time as a rule.
 
 mod area_system;
@@ -56,7 +58,8 @@ impl SphereMap {
     /// `surface` is the surface that was mapped. Where its faces were split, their parts are laid out.
     ///
     /// # Errors
-    /// Arrays of the wrong length and options out of range.
+    /// Arrays of the wrong length and options out of range; [`MapError::OpenOnSphere`](crate::MapError::OpenOnSphere) for
+    /// holes without a filling.
     /// [`NumericsError::LayoutFolds`](crate::NumericsError::LayoutFolds) if faces fold wherever the singular points are
     /// put; [`Error::CancelledEarly`] if the observer ended the run before there was a layout without folds.
     ///
@@ -89,17 +92,24 @@ impl SphereMap {
     /// Faces that do not fit the map.
     pub fn faces_on_sphere(&self, faces: ArrayView2<'_, u32>) -> Result<SphereFaces, Error> {
         let n_vertices = self.positions.nrows();
-        let Some(refinement) = &self.refinement else {
-            let image = Surface::new(&self.positions, faces)?;
-            return Ok(SphereFaces { image, targets: self.targets.clone(), face_of: None, n_vertices });
-        };
-        let positions = concatenate![Axis(0), self.positions, refinement.positions];
-        Ok(SphereFaces {
-            image: Surface::new(positions, &refinement.faces)?,
-            targets: refinement.targets.clone(),
-            face_of: Some(refinement.face_of.clone()),
+        if let Some(refinement) = &self.refinement {
+            let positions = concatenate![Axis(0), self.positions, refinement.positions];
+            return Ok(SphereFaces {
+                image: Surface::new(positions, &refinement.faces)?,
+                targets: refinement.targets.clone(),
+                face_of: Some(refinement.face_of.clone()),
+                n_vertices,
+                n_filling: 0,
+            });
+        }
+        let whole = SphereFaces {
+            image: Surface::new(&self.positions, faces)?,
+            targets: self.targets.clone(),
+            face_of: None,
             n_vertices,
-        })
+            n_filling: 0,
+        };
+        self.filling.as_ref().map_or(Ok(whole.clone()), |filling| whole.filled(filling))
     }
 }
 

@@ -11,7 +11,7 @@ use crate::mesh::corners::VertexCorners;
 /// A map onto the sphere laid out in the plane, cut open along a seam.
 #[derive(Debug, Clone)]
 pub struct Layout {
-    /// (k, 2): the points, in the order of their vertices. The whole image has the area of the sphere. In single
+    /// (k, 2): the points, in the order of their vertices. The whole image, with holes, has the area of the sphere. In single
     /// precision all coordinates are numbers of that precision.
     pub points: Array2<f64>,
     /// (m, 3): the faces between points, counter-clockwise, in the order of the faces of the map or of its refinement.
@@ -33,6 +33,27 @@ pub(super) struct Split {
     pub faces: Vec<[Vertex; 3]>,
     /// (k,): the vertex of each point.
     pub vertex_of: Vec<Vertex>,
+}
+
+impl Split {
+    /// The part of the first faces, with the points that these have.
+    pub(super) fn first_faces(mut self, n_faces: usize) -> Self {
+        if n_faces == self.faces.len() {
+            return self;
+        }
+        self.faces.truncate(n_faces);
+        let mut is_used = vec![false; self.points.len()];
+        self.faces.as_flattened().iter().for_each(|&point| is_used[point] = true);
+        let mut numbers = vec![Vertex::default(); self.points.len()];
+        let used = Vertex::all(self.points.len()).filter(|&point| is_used[point]);
+        let used: Vec<Vertex> = used.collect();
+        used.iter().enumerate().for_each(|(number, &point)| numbers[point] = Vertex::new(number));
+        Self {
+            points: used.iter().map(|&point| self.points[point]).collect(),
+            faces: self.faces.iter().map(|face| face.map(|point| numbers[point])).collect(),
+            vertex_of: used.iter().map(|&point| self.vertex_of[point]).collect(),
+        }
+    }
 }
 
 /// Joins the corners of each vertex that have the same image.

@@ -23,7 +23,7 @@ use crate::distortion::{Distortion, Image, measure};
 use crate::error::{Error, Side};
 use crate::filling::membrane;
 use crate::mesh::{Surface, TriangleMesh, Vertex};
-use crate::sphere::SphereMap;
+use crate::sphere::{SphereFilling, SphereMap};
 use crate::vector::coordinates;
 
 /// Which holes are filled.
@@ -158,23 +158,26 @@ impl Filled {
 
 /// What a filled surface has for the given vertices and faces, which come first.
 pub trait OfGiven: Clone {
-    /// The part of the given surface, whose faces are oriented as `faces`.
+    /// The part of the given surface, from a map of the one with the faces `filled`, as oriented.
     #[doc(hidden)]
-    fn of_given(&self, given: &TriangleMesh, faces: &[[Vertex; 3]]) -> Result<Self, Error>;
+    fn of_given(&self, given: &TriangleMesh, filled: &[[Vertex; 3]]) -> Result<Self, Error>;
 }
 
 impl OfGiven for DiskMap {
-    fn of_given(&self, given: &TriangleMesh, faces: &[[Vertex; 3]]) -> Result<Self, Error> {
-        let (uv, distortion) = part(&self.uv, given, faces)?;
+    fn of_given(&self, given: &TriangleMesh, filled: &[[Vertex; 3]]) -> Result<Self, Error> {
+        let (uv, distortion) = part(&self.uv, given, &filled[..given.faces().len()])?;
         Ok(Self { uv, distortion, ..self.clone() })
     }
 }
 
 impl OfGiven for SphereMap {
-    fn of_given(&self, given: &TriangleMesh, faces: &[[Vertex; 3]]) -> Result<Self, Error> {
-        let (positions, distortion) = part(&self.positions, given, faces)?;
-        let targets = self.targets[..faces.len()].to_vec();
-        Ok(Self { positions, distortion, targets, refinement: None, ..self.clone() })
+    fn of_given(&self, given: &TriangleMesh, filled: &[[Vertex; 3]]) -> Result<Self, Error> {
+        let n_faces = given.faces().len();
+        let (positions, distortion) = part(&self.positions, given, &filled[..n_faces])?;
+        let sizes = [given.n_vertices(), n_faces];
+        let filling = SphereFilling::after(sizes, &self.positions, filled, &self.targets);
+        let targets = self.targets[..n_faces].to_vec();
+        Ok(Self { positions, distortion, targets, refinement: None, filling, ..self.clone() })
     }
 }
 
@@ -198,6 +201,7 @@ impl<Map: OfGiven> Registration<Map> {
     pub(super) fn of_given(self, given: [&Surface; 2]) -> Result<Self, Error> {
         let correspondence = self.correspondence.of_given(given);
         let [source, target] = [given[0].mesh()?, given[1].mesh()?];
+        let [filled, target_filled] = self.correspondence.sides().map(|side| &side.faces[..]);
         let [faces, target_faces] = correspondence.sides().map(|side| &side.faces[..]);
         let (registered, distortion) = part(&self.registered, source, faces)?;
         let (target_registered, target_distortion) = part(&self.target_registered, target, target_faces)?;
@@ -206,8 +210,8 @@ impl<Map: OfGiven> Registration<Map> {
             target_registered,
             distortion,
             target_distortion,
-            source_map: self.source_map.of_given(source, faces)?,
-            target_map: self.target_map.of_given(target, target_faces)?,
+            source_map: self.source_map.of_given(source, filled)?,
+            target_map: self.target_map.of_given(target, target_filled)?,
             landmark_error: self.landmark_error.clone(),
             missed: self.missed.clone(),
             off_boundary: self.off_boundary.clone(),

@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::location::Location;
 use crate::mesh::{Face, Surface, Vertex};
 use crate::record::{Recorded, Tree, index_entry, misfit};
-use crate::sphere::SphereMap;
+use crate::sphere::{SphereFilling, SphereMap};
 use crate::vector::Vector3;
 
 impl Recorded for Distortion {
@@ -70,13 +70,17 @@ impl Recorded for DiskMap {
 /// Maps of registrations have no split faces.
 impl Recorded for SphereMap {
     fn record(&self) -> Tree {
-        Tree::new()
+        let record = Tree::new()
             .with("positions", self.positions.clone())
             .with("status", self.status.as_str())
             .with("history", self.history.record())
             .with("distortion", self.distortion.record())
             .with("targets", Array1::from(self.targets.clone()))
-            .with("seconds", self.seconds)
+            .with("seconds", self.seconds);
+        match &self.filling {
+            Some(filling) => record.with("filling", filling.record()),
+            None => record,
+        }
     }
 
     fn of_record(record: &Tree) -> Result<Self, Error> {
@@ -87,7 +91,26 @@ impl Recorded for SphereMap {
             distortion: record.read("distortion")?,
             targets: record.reals("targets")?.to_vec(),
             refinement: None,
+            filling: if record.has("filling") { Some(Box::new(record.read("filling")?)) } else { None },
             seconds: record.real("seconds")?,
+        })
+    }
+}
+
+impl Recorded for SphereFilling {
+    fn record(&self) -> Tree {
+        let faces = index_entry(self.faces.rows().into_iter().map(|face| [face[0], face[1], face[2]]));
+        Tree::new()
+            .with("positions", self.positions.clone())
+            .with("faces", faces)
+            .with("targets", Array1::from(self.targets.clone()))
+    }
+
+    fn of_record(record: &Tree) -> Result<Self, Error> {
+        Ok(Self {
+            positions: record.reals("positions")?,
+            faces: from_rows(record.index_rows::<3>("faces")?),
+            targets: record.reals("targets")?.to_vec(),
         })
     }
 }

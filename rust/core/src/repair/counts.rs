@@ -53,12 +53,12 @@ impl RepairCounts {
     /// What was done, one sentence without its stop for each kind of repair.
     pub(super) fn sentences(&self) -> Vec<String> {
         let sentences = [
-            (self.vertices_not_finite, "dropped {} that are NaN or infinite", "vertex"),
+            (self.vertices_not_finite, "dropped {} with NaN or infinity", "vertex"),
             (self.faces_not_finite, "dropped {} at such vertices", "face"),
             (self.loose_vertices, "dropped {} without a face", "vertex"),
             (self.merged_points, "merged {} with others at the same place", "point"),
             (self.faces_without_area, "removed {} without area", "face"),
-            (self.repeated_faces, "dropped {} that repeat another one", "face"),
+            (self.repeated_faces, "dropped {} repeating another one", "face"),
             (self.split_edges, "split {} of three or more faces", "edge"),
             (self.split_vertices, "added {} where parts only touched", "vertex"),
             (self.turned_faces, "turned {} over", "face"),

@@ -38,18 +38,35 @@ impl Draft {
         draft
     }
 
-    /// Drops the vertices that have no face; those that stay keep their order.
+    /// Drops the vertices that have no face; those that stay keep their order. A given vertex whose first copy is dropped
+    /// is from then on another of its copies.
     pub(super) fn drop_loose(&mut self) {
         let mut is_used = vec![false; self.points.len()];
         self.faces.as_flattened().iter().for_each(|&vertex| is_used[vertex] = true);
         let mut numbers = vec![None; self.points.len()];
         let used = Vertex::all(self.points.len()).filter(|&vertex| is_used[vertex]);
         used.enumerate().for_each(|(number, vertex)| numbers[vertex] = Some(Vertex::new(number)));
+        self.renumber_given(&numbers);
         retain(&mut self.points, |vertex| is_used[vertex]);
         retain(&mut self.vertex_of, |vertex| is_used[vertex]);
         let renumbered = |vertex: Vertex| numbers[vertex].unwrap_or_default();
         self.faces.iter_mut().for_each(|face| *face = face.map(renumbered));
-        self.vertex_to.iter_mut().for_each(|vertex| *vertex = vertex.and_then(|vertex| numbers[vertex]));
+    }
+
+    /// Gives the given vertices new numbers of what they became, or of another copy where that has none.
+    fn renumber_given(&mut self, numbers: &[Option<Vertex>]) {
+        let mut copies = vec![None; self.vertex_to.len()];
+        for (given, number) in self.vertex_of.iter().zip(numbers).rev() {
+            if let (Some(given), Some(number)) = (given, number) {
+                copies[*given] = Some(*number);
+            }
+        }
+        let vertex_of = &self.vertex_of;
+        for became in &mut self.vertex_to {
+            *became = became.and_then(|vertex| {
+                numbers[vertex].or_else(|| vertex_of[vertex].and_then(|given| copies[given]))
+            });
+        }
     }
 
     /// Gives every vertex another vertex in its place.

@@ -4,8 +4,7 @@
 use super::draft::Draft;
 use super::options::{CloseHoles, RepairOptions};
 use super::pieces::Pieces;
-use crate::filling::{membrane, spanned_area};
-use crate::mesh::geometry::{area, edge_lengths};
+use crate::filling::{is_fat, membrane, spanned_area};
 use crate::mesh::{Topology, Vertex, VertexCorners};
 
 /// A pinhole has at most so many edges.
@@ -13,9 +12,6 @@ const PINHOLE_EDGES: usize = 8;
 
 /// A pinhole is at most this part of its piece.
 const PINHOLE_SHARE: f64 = 0.1;
-
-/// A face that closes a hole is no thinner than this: its area over the square of its longest edge.
-const THINNEST: f64 = 1e-3;
 
 /// Closes the holes that the options ask for; returns their number.
 pub(super) fn close_holes(draft: &mut Draft, pieces: &Pieces, options: &RepairOptions) -> usize {
@@ -63,9 +59,7 @@ fn chosen(
 /// Closes one hole, by a single face where `may_be_face` and that has an area.
 pub(super) fn close(draft: &mut Draft, hole: &[Vertex], may_be_face: bool) {
     if let (&[a, b, c], true) = (hole, may_be_face) {
-        let corners = [a, b, c].map(|vertex| draft.points[vertex]);
-        let longest = edge_lengths(corners).into_iter().fold(0.0, f64::max);
-        if area(corners.map(|x| x * (1.0 / longest))) > THINNEST {
+        if is_fat([a, b, c].map(|vertex| draft.points[vertex])) {
             draft.faces.push([b, a, c]);
             return;
         }

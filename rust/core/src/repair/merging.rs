@@ -2,13 +2,22 @@
 //! Merges the points of open edges that lie on each other, or near each other.
 //!
 //! Points where the surface is closed, and points that touch without an edge in common, stay apart: merged they would be
-//! points at which parts of the surface only touch. Points are sorted into cells as wide as the distance; those of
-//! neighboring cells are compared. Cost: O(n log n) for points of which few are near each other.
+//! points at which parts of the surface only touch. Points are sorted into cells whose diagonal is the distance, so that
+//! those of one cell are near each other; only points of neighboring cells are compared. Cost: O(n log n), and more only
+//! for crowds of points that are farther apart than the distance by little.
+
+use std::collections::HashMap;
 
 use super::draft::Draft;
 use crate::mesh::{EdgeTable, Vertex};
 use crate::sets::Sets;
 use crate::vector::Vector3;
+
+/// Smaller distances, in the size of the mesh, are within the rounding of coordinates: equal points alone are merged.
+const SMALLEST_DISTANCE: f64 = 1e-15;
+
+/// The numbers of a cell along the axes.
+type Cell = [i64; 3];
 
 /// Merges points no farther apart than `distance`; returns the number of points that vanish.
 pub(super) fn merge_points(draft: &mut Draft, distance: f64) -> usize {
@@ -21,7 +30,7 @@ pub(super) fn merge_points(draft: &mut Draft, distance: f64) -> usize {
     points.dedup();
     // 2. Sets of points that are near each other
     let mut near = Sets::new(draft.points.len());
-    if distance > 0.0 {
+    if distance > SMALLEST_DISTANCE {
         join_near(&draft.points, &points, distance, &mut near);
     } else {
         join_equal(&draft.points, &points, &mut near);
@@ -69,19 +78,37 @@ fn join_equal(points: &[Vector3], open: &[Vertex], sets: &mut Sets) {
     }
 }
 
+/// Joins points that are no farther apart than a distance.
 fn join_near(points: &[Vector3], open: &[Vertex], distance: f64, sets: &mut Sets) {
-    let cell_of = |vertex: Vertex| points[vertex].0.map(|x| (x / distance).floor() as i64);
-    let mut cells: Vec<_> = open.iter().map(|&vertex| (cell_of(vertex), vertex)).collect();
-    cells.sort_unstable();
-    for &(cell, vertex) in &cells {
-        for shift in 0..27 {
-            let neighbor =
-                [0, 1, 2].map(|axis| cell[axis].saturating_add(shift / 3_i64.pow(axis as u32) % 3 - 1));
-            let begin = cells.partition_point(|(other, _)| *other < neighbor);
-            let others = cells[begin..].iter().take_while(|(other, _)| *other == neighbor);
-            let near = others
-                .filter(|(_, other)| *other < vertex && points[*other].distance(points[vertex]) <= distance);
-            near.for_each(|(_, other)| _ = sets.join(vertex.index(), other.index()));
+    // 1. Points of one cell are near each other: its diagonal is the distance
+    let width = distance / 3.0_f64.sqrt();
+    let cell_of = |vertex: Vertex| points[vertex].0.map(|x| (x / width).floor() as i64);
+    let mut placed: Vec<(Cell, Vertex)> = open.iter().map(|&vertex| (cell_of(vertex), vertex)).collect();
+    placed.sort_unstable();
+    let cells: Vec<&[(Cell, Vertex)]> = placed.chunk_by(|one, next| one.0 == next.0).collect();
+    for members in &cells {
+        members[1..].iter().for_each(|(_, vertex)| _ = sets.join(members[0].1.index(), vertex.index()));
+    }
+    // 2. Points of cells that are near each other, once for each pair of cells
+    let number_of: HashMap<Cell, usize> =
+        cells.iter().enumerate().map(|(number, members)| (members[0].0, number)).collect();
+    let shifts: Vec<Cell> = (-2..=2)
+        .flat_map(|x| (-2..=2).flat_map(move |y| (-2..=2).map(move |z| [x, y, z])))
+        .filter(|shift| *shift > [0, 0, 0])
+        .collect();
+    for members in &cells {
+        for shift in &shifts {
+            let cell = members[0].0;
+            let beside = [0, 1, 2].map(|axis| cell[axis] + shift[axis]);
+            let Some(&number) = number_of.get(&beside) else { continue };
+            let others = cells[number];
+            let [root, other_root] = [members, others].map(|each| sets.root(each[0].1.index()));
+            let are_near = |(_, a): &(Cell, Vertex)| {
+                others.iter().any(|(_, b)| points[*a].distance(points[*b]) <= distance)
+            };
+            if root != other_root && members.iter().any(are_near) {
+                sets.join(root, other_root);
+            }
         }
     }
 }

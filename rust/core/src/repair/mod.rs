@@ -6,12 +6,14 @@
 //!
 //! Input: any triangles whose indices are in range. Cost: a few sorts of the edges; for handles see [`handles`].
 
+mod carried;
 mod counts;
 mod draft;
 mod handles;
 mod holes;
 mod merging;
 mod options;
+mod paths;
 mod pieces;
 mod repaired;
 mod repeated;
@@ -33,8 +35,8 @@ pub use repaired::Repaired;
 /// Repairs a mesh of `vertices` (n, 3) and `faces` (m, 3).
 ///
 /// # Errors
-/// Arrays of another shape or empty, indices out of range, options out of range; [`MeshError::NoFaces`] where no face
-/// has an area.
+/// Arrays of another shape or empty, indices out of range, options out of range; [`MeshError::NoFaceLeft`] where no face
+/// has an area, [`MeshError::NoMainPiece`] with [`Keep::Main`].
 ///
 /// ```
 /// use authalic::{RepairOptions, repair};
@@ -78,14 +80,14 @@ fn repair_views(
     counts.repeated_faces = repeated::drop_repeated(&mut draft);
     draft.drop_loose();
     if draft.faces.is_empty() {
-        return Err(MeshError::NoFaces.into());
+        return Err(MeshError::NoFaceLeft.into());
     }
     // 4. A manifold, oriented
     let split = sheets::split_sheets(&mut draft);
     (counts.split_edges, counts.split_vertices) = (split.edges, split.vertices);
     let pieces = pieces::orient(&mut draft);
     // 5. Its pieces, holes and handles
-    let (pieces, dropped) = pieces::choose(&mut draft, pieces, options.keep);
+    let (pieces, dropped) = pieces::choose(&mut draft, pieces, options.keep)?;
     counts.dropped_pieces = dropped;
     draft.drop_loose();
     counts.closed_holes = holes::close_holes(&mut draft, &pieces, options);
@@ -109,7 +111,7 @@ fn finite_part(
     counts.loose_vertices =
         Vertex::all(rows.len()).filter(|vertex| is_finite(vertex) && !is_used[*vertex]).count();
     let draft = Draft::new(rows.len(), faces, |face| faces[face].iter().all(is_finite));
-    if draft.faces.is_empty() { Err(MeshError::NoFaces) } else { Ok(draft) }
+    if draft.faces.is_empty() { Err(MeshError::NoFaceLeft) } else { Ok(draft) }
 }
 
 /// The unit of a draft in that of the vertices given.

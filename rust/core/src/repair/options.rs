@@ -23,7 +23,8 @@ pub enum CloseHandles {
     /// None.
     #[default]
     Off,
-    /// Those that a loop opens whose length is at most a third of √area, of the area of their piece.
+    /// Those as small as the noise of a mesh: that a loop opens whose length is at most 16 mean edges of their piece,
+    /// and at most a tenth of √area, of its area.
     Noise,
     /// Those that a loop of at most this length opens.
     UpTo(f64),
@@ -39,6 +40,8 @@ pub enum Keep {
     All,
     /// The one of the largest area.
     Largest,
+    /// The one that has more than half of the area; where none has, the mesh is refused.
+    Main,
 }
 
 /// Options of [`repair`](super::repair).
@@ -71,7 +74,7 @@ impl Default for RepairOptions {
 impl RepairOptions {
     /// What a map needs: one piece without pinholes and without handles of noise.
     pub fn for_a_map(keep_outline: bool) -> Self {
-        Self { keep_outline, close_handles: CloseHandles::Noise, keep: Keep::Largest, ..Default::default() }
+        Self { keep_outline, close_handles: CloseHandles::Noise, keep: Keep::Main, ..Default::default() }
     }
 
     /// Refuses lengths that are no lengths.

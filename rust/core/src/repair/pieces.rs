@@ -3,6 +3,7 @@
 
 use super::draft::Draft;
 use super::options::Keep;
+use crate::error::{Elements, MeshError};
 use crate::mesh::Face;
 use crate::mesh::geometry::area;
 use crate::mesh::orientation::{Orientation, consistent};
@@ -14,6 +15,8 @@ pub(super) struct Pieces {
     pub of_face: Vec<u32>,
     /// The area of each piece, of the mesh scaled to a unit diagonal.
     pub areas: Vec<f64>,
+    /// The lowest face of each piece.
+    pub first_faces: Vec<Face>,
     /// Whether a piece is one-sided, so that it cannot be oriented.
     pub has_one_sided: bool,
 }
@@ -29,22 +32,32 @@ pub(super) fn orient(draft: &mut Draft) -> Pieces {
     for (face, &piece) in component.iter().enumerate() {
         areas[piece as usize] += area(draft.corners(face));
     }
-    Pieces { of_face: component, areas, has_one_sided: conflict.is_some() }
+    Pieces { of_face: component, areas, first_faces, has_one_sided: conflict.is_some() }
 }
 
 /// Drops the pieces that are not kept; returns their number.
-pub(super) fn choose(draft: &mut Draft, pieces: Pieces, keep: Keep) -> (Pieces, usize) {
+///
+/// # Errors
+/// [`MeshError::NoMainPiece`] where the main one is asked for and none is.
+pub(super) fn choose(draft: &mut Draft, pieces: Pieces, keep: Keep) -> Result<(Pieces, usize), MeshError> {
     let dropped = pieces.areas.len().saturating_sub(1);
     if keep == Keep::All || dropped == 0 {
-        return (pieces, 0);
+        return Ok((pieces, 0));
     }
     let largest = (0..pieces.areas.len()).rev().max_by(|&a, &b| pieces.areas[a].total_cmp(&pieces.areas[b]));
     let largest = largest.unwrap_or_default();
+    if keep == Keep::Main && 2.0 * pieces.areas[largest] <= pieces.areas.iter().sum() {
+        let given = pieces.first_faces.iter().filter_map(|&face| draft.face_of[face]);
+        return Err(
+            Elements::collect(given).map_or(MeshError::NoFaces, |faces| MeshError::NoMainPiece { faces })
+        );
+    }
     draft.keep_faces(|_, face| pieces.of_face[face] as usize == largest);
     let kept = Pieces {
         of_face: vec![0; draft.faces.len()],
         areas: vec![pieces.areas[largest]],
+        first_faces: vec![Face::default()],
         has_one_sided: consistent(draft.points.len(), &draft.faces).conflict.is_some(),
     };
-    (kept, dropped)
+    Ok((kept, dropped))
 }

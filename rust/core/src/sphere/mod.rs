@@ -27,7 +27,7 @@ use crate::arrays::{from_vectors, rows_of, vectors};
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Distortion, Image, measure, targets};
 use crate::error::Error;
-use crate::mesh::{Surface, TriangleMesh};
+use crate::mesh::{Surface, TriangleMesh, Vertex, index_array};
 
 use crate::codomain::SpatialMap;
 use crate::vector::Vector3;
@@ -57,8 +57,39 @@ pub struct SphereMap {
     pub targets: Vec<f64>,
     /// The split faces, with [`SphereMapOptions::refine`].
     pub refinement: Option<Box<Refinement>>,
+    /// What fills the holes of an open surface on the sphere, with [`SphereMapOptions::fill_holes`].
+    pub filling: Option<Box<SphereFilling>>,
     /// Wall time of the whole call.
     pub seconds: f64,
+}
+
+/// What fills the holes of a map on the sphere, so that it can be laid out; no part of the map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SphereFilling {
+    /// (k, 3): the vertices inside holes, numbered on from those of the map; unit rows.
+    pub positions: Array2<f64>,
+    /// (j, 3): the faces, counter-clockwise seen from outside.
+    pub faces: Array2<u32>,
+    /// (j,): their measures, on the scale of the map's targets.
+    pub targets: Vec<f64>,
+}
+
+impl SphereFilling {
+    /// The part of a filled map after the vertices and faces of the given surface.
+    pub(crate) fn after(
+        [n_vertices, n_faces]: [usize; 2],
+        positions: &Array2<f64>,
+        faces: &[[Vertex; 3]],
+        targets: &[f64],
+    ) -> Option<Box<Self>> {
+        (faces.len() > n_faces).then(|| {
+            Box::new(Self {
+                positions: positions.slice_axis(Axis(0), Slice::from(n_vertices..)).to_owned(),
+                faces: index_array(&faces[n_faces..]),
+                targets: targets[n_faces..].to_vec(),
+            })
+        })
+    }
 }
 
 impl SphereMap {
@@ -82,6 +113,7 @@ impl SphereMap {
             distortion,
             targets,
             refinement: None,
+            filling: None,
         })
     }
 }
@@ -175,6 +207,7 @@ pub(crate) fn map_sphere(
         distortion,
         targets: targets.into_owned(),
         refinement,
+        filling: None,
     })
 }
 
@@ -196,7 +229,10 @@ fn map_filled(
     let positions = map.positions.slice_axis(Axis(0), Slice::from(..mesh.n_vertices())).to_owned();
     let image = vectors(positions.view());
     let distortion = measure(mesh.points(), mesh.faces(), Image::Sphere(&image), &given)?;
-    Ok(SphereMap { positions, distortion, targets: given, ..map })
+    let sizes = [mesh.n_vertices(), given.len()];
+    let targets = filled.targets.to_vec();
+    let filling = SphereFilling::after(sizes, &map.positions, filled.mesh.faces(), &targets);
+    Ok(SphereMap { positions, distortion, targets: given, filling, ..map })
 }
 
 /// The map aligned with its surface, or unchanged where a start was given.

@@ -66,7 +66,7 @@ fn arrays_that_do_not_fit_are_refused() {
     let image = surface();
     let (n_vertices, n_faces) = (image.n_vertices(), image.n_faces());
     let (targets, parts) = (vec![1.0; n_faces], (0..n_faces).rev().collect::<Vec<_>>());
-    let fitting = SphereFaces { image, targets: targets.clone(), face_of: None, n_vertices };
+    let fitting = SphereFaces { image, targets: targets.clone(), face_of: None, n_vertices, n_filling: 0 };
     let refused =
         |sphere: SphereFaces, options: &LayoutOptions<'_>| match layout(&sphere, options, &mut Silent) {
             Err(Error::InvalidArray { name, .. }) => name,

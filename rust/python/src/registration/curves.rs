@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of the registration by curves.
 
-use authalic::{HarmonicSolver, HyperbolicEnergy, HyperbolicOptions, LandmarkCurves, Side};
+use authalic::{HarmonicSolver, HyperbolicEnergy, HyperbolicOptions, LandmarkCurves, RepairOptions, Side};
 use pyo3::prelude::*;
 
 use super::features::GivenFeatures;
 use super::finished::Finished;
 use super::result::Registration;
-use super::surfaces::{SOURCE, TARGET, checked, vertex_paths};
+use super::surfaces::{Pair, SOURCE, TARGET, vertex_paths};
 use crate::arrays::real_table;
 use crate::errors::bad_option;
 use crate::options::{choice, metrics, parse_iterations};
@@ -54,6 +54,10 @@ use crate::surface::Given;
 ///     Fill all boundary loops, but those along which a curve and its partner run, for the time of the call: for
 ///     surfaces with different numbers of holes. Curves may meet the holes that are filled. The result is that of the
 ///     given vertices, with `in_holes` as of `register_spheres`; the certificates are those of the filled surfaces.
+/// repair : bool
+///     Repair both surfaces first, as the function `repair` does: their largest pieces, without pinholes and handles of
+///     noise. The registration is then that of `source_repaired` and `target_repaired`, while curves and
+///     features are those of the vertices given. Default False.
 /// metric : "newton" or "ricci_flow"
 ///     The method for the hyperbolic metrics: Newton's, or the paper's Ricci flow (slow, then finished by Newton's).
 /// solver : "newton" or "heat"
@@ -105,7 +109,7 @@ use crate::surface::Given;
 #[pyfunction]
 #[pyo3(signature = (source, target, *, source_curves, target_curves, energy="surface", area_weight=1.0,
                     angle_weight=1.0, features=None, feature_weight=None, position_weight=0.0,
-                    fill_holes=false, metric="newton", solver="newton", max_iterations=None, tolerance=None,
+                    fill_holes=false, repair=false, metric="newton", solver="newton", max_iterations=None, tolerance=None,
                     source_sphere=None, target_sphere=None, progress=None, preview=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn register_hyperbolic(
@@ -121,6 +125,7 @@ pub fn register_hyperbolic(
     feature_weight: Option<&Bound<'_, PyAny>>,
     position_weight: f64,
     fill_holes: bool,
+    repair: bool,
     metric: &str,
     solver: &str,
     max_iterations: Option<i64>,
@@ -132,7 +137,7 @@ pub fn register_hyperbolic(
 ) -> PyResult<Py<Registration>> {
     let kept = options!(
         py; source_curves, target_curves, energy, area_weight, angle_weight, features, feature_weight, position_weight,
-        fill_holes, metric, solver, max_iterations, tolerance, source_sphere, target_sphere
+        fill_holes, repair, metric, solver, max_iterations, tolerance, source_sphere, target_sphere
     )?;
     let mut options = HyperbolicOptions {
         energy: choice("energy", energy, &ENERGIES)?,
@@ -150,6 +155,13 @@ pub fn register_hyperbolic(
     let target = Given::pair(target, TARGET)?;
     let source_curves = vertex_paths(source_curves, "source_curves", source.n_vertices())?;
     let target_curves = vertex_paths(target_curves, "target_curves", target.n_vertices())?;
+    if repair && (source_sphere.is_some() || target_sphere.is_some()) {
+        return Err(bad_option(
+            "source_sphere and target_sphere must be left out with repair=True: they have rows for other vertices; \
+             call repair first"
+                .into(),
+        ));
+    }
     let spheres = match (source_sphere, target_sphere) {
         (None, None) => None,
         (Some(source), Some(target)) => {
@@ -162,17 +174,25 @@ pub fn register_hyperbolic(
         }
     };
     let features = GivenFeatures::new(features, feature_weight)?;
-    let finished = run_with_preview(py, progress, preview, move |observer| {
-        let (source, target) = (checked(source, Side::Source)?, checked(target, Side::Target)?);
+    let repair = repair.then(|| RepairOptions::for_a_map(false));
+    let outcome = run_with_preview(py, progress, preview, move |observer| {
+        let pair = Pair::new([source, target], repair.as_ref())?;
+        let source_curves = pair.source.curves(Side::Source, source_curves)?;
+        let target_curves = pair.target.curves(Side::Target, target_curves)?;
         let curves = LandmarkCurves { source: &source_curves, target: &target_curves };
         let spheres = spheres.as_ref().map(|[source, target]| [source.view(), target.view()]);
+        let features = features.map(|features| features.prepared(&pair)).transpose()?;
         let features = features.as_ref().map(GivenFeatures::view);
         let options = HyperbolicOptions { spheres, features, ..options };
-        let registration = authalic::register_hyperbolic(&source, &target, &curves, &options, observer)?;
-        Ok(Finished::Curves(registration.into()))
+        pair.registered(|pair| {
+            let surfaces = [&pair.source.surface, &pair.target.surface];
+            let registration =
+                authalic::register_hyperbolic(surfaces[0], surfaces[1], &curves, &options, observer)?;
+            Ok(Finished::Curves(registration.into()))
+        })
     })?;
-    let call = finished.call(py, "register_hyperbolic", &kept);
-    Registration::new(py, finished, call)
+    let call = outcome.call("register_hyperbolic", &kept);
+    Registration::new(py, outcome, call)
 }
 
 /// The energies, by name.

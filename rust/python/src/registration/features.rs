@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Features and weights of landmarks as arguments of a registration.
 
-use authalic::Features;
+use authalic::{Error, Features, Side};
 use numpy::ndarray::{Array1, Array2};
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
+use super::surfaces::Pair;
 use crate::arrays::{as_array, converted, shape_words};
 use crate::errors::{bad_array, bad_option};
 
@@ -30,14 +31,25 @@ impl GivenFeatures {
                 ))
             });
         };
-        let Ok((source, target)) = features.extract::<(Bound<'_, PyAny>, Bound<'_, PyAny>)>() else {
+        let parts: Vec<Bound<'_, PyAny>> =
+            features.try_iter().and_then(|parts| parts.take(3).collect()).unwrap_or_default();
+        let [source, target] = &parts[..] else {
             let found = features.get_type().name()?.to_string();
             let expected = "a pair (source_values, target_values)".into();
             return Err(bad_array(features.py(), "features", found, expected));
         };
-        let (source, target) = (signals(&source, "source features")?, signals(&target, "target features")?);
+        let (source, target) = (signals(source, "source features")?, signals(target, "target features")?);
         let weights = weight.map_or_else(|| Ok(vec![1.0]), |weight| numbers(weight, "feature_weight"))?;
         Ok(Some(Self { source, target, weights }))
+    }
+
+    /// The signals of the surfaces, as they were repaired.
+    pub(super) fn prepared(self, pair: &Pair) -> Result<Self, Error> {
+        Ok(Self {
+            source: pair.source.signals(Side::Source, self.source)?,
+            target: pair.target.signals(Side::Target, self.target)?,
+            weights: self.weights,
+        })
     }
 
     pub(super) fn view(&self) -> Features<'_> {

@@ -5,14 +5,29 @@ use authalic::{
     Correspondence, CurveRegistration, DiskRegistration, Error, Observer, Recorded, SphereRegistration, Tree,
 };
 
-use pyo3::Python;
-
-use crate::provenance::{Call, Options, fingerprint};
+use crate::provenance::{Call, Fingerprint, Options};
 
 pub enum Finished {
     Disk(DiskRegistration),
     Sphere(SphereRegistration),
     Curves(Box<CurveRegistration>),
+}
+
+/// A finished registration, what it was given, and how that was repaired.
+pub struct Outcome {
+    pub finished: Finished,
+    /// The fingerprints of source and target as given.
+    pub inputs: [Fingerprint; 2],
+    /// The repaired source and target.
+    pub repaired: [Option<authalic::Repaired>; 2],
+}
+
+impl Outcome {
+    /// The call of the function that has returned this.
+    pub fn call(&self, function: &'static str, options: &Options) -> Call {
+        let [source, target] = self.inputs.clone();
+        Call { function, options: options.clone(), inputs: vec![("source", source), ("target", target)] }
+    }
 }
 
 impl Finished {
@@ -32,14 +47,6 @@ impl Finished {
             Self::Sphere(registration) => registration.strain(),
             Self::Curves(registration) => registration.strain(),
         }
-    }
-
-    /// The call of a function that has returned this.
-    pub fn call(&self, py: Python<'_>, function: &'static str, options: &Options) -> Call {
-        let map = self.correspondence();
-        let inputs =
-            py.detach(|| vec![("source", fingerprint(map.source())), ("target", fingerprint(map.target()))]);
-        Call { function, options: options.clone(), inputs }
     }
 
     /// Signs that curves are wrong.

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of the registrations by points.
 
-use authalic::{Energy, Error, Landmarks, Observer, RegistrationOptions, Side, Surface};
+use authalic::{Energy, Error, Landmarks, Observer, RegistrationOptions, RepairOptions, Side, Surface};
 use pyo3::prelude::*;
 
 use super::features::{GivenFeatures, numbers};
-use super::finished::Finished;
+use super::finished::{Finished, Outcome};
 use super::result::Registration;
-use super::surfaces::{SOURCE, TARGET, checked};
+use super::surfaces::{Pair, SOURCE, TARGET};
 use crate::indices::index_list;
 use crate::options::choice;
 use crate::provenance::options;
@@ -61,6 +61,10 @@ use crate::surface::Given;
 ///     Fill all boundary loops but the longest of either surface for the time of the call, so that both may have
 ///     different numbers of holes. The result is that of the given vertices; `in_holes` has those of the source that come
 ///     to lie on a filling of the target.
+/// repair : bool
+///     Repair both surfaces first, as the function `repair` does: their largest pieces, without pinholes and handles of
+///     noise, with their longest boundary loops. The registration is then that of `source_repaired` and `target_repaired`, while landmarks and
+///     features are those of the vertices given. Default False.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between iterations and within long steps; False cancels and returns the best map so far.
 /// preview : callable(positions), optional
@@ -96,7 +100,7 @@ use crate::surface::Given;
 #[pyfunction]
 #[pyo3(signature = (source, target, *, source_landmarks, target_landmarks, energy="surface", weight=1.0, area_weight=1.0,
                     angle_weight=None, weights=None, features=None, feature_weight=None, position_weight=0.0,
-                    fill_holes=false, progress=None, preview=None))]
+                    fill_holes=false, repair=false, progress=None, preview=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn register_disks(
     py: Python<'_>,
@@ -113,12 +117,13 @@ pub fn register_disks(
     feature_weight: Option<&Bound<'_, PyAny>>,
     position_weight: f64,
     fill_holes: bool,
+    repair: bool,
     progress: Option<&Bound<'_, PyAny>>,
     preview: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Py<Registration>> {
     let kept = options!(
         py; source_landmarks, target_landmarks, energy, weight, area_weight, angle_weight, weights, features,
-        feature_weight, position_weight, fill_holes
+        feature_weight, position_weight, fill_holes, repair
     )?;
     let energy = choice("energy", energy, &ENERGIES)?;
     let options = RegistrationOptions {
@@ -136,11 +141,12 @@ pub fn register_disks(
         [weights, features, feature_weight],
         options,
     )?;
-    let finished = run_with_preview(py, progress, preview, move |observer| {
-        arguments.register(authalic::register_disks, observer).map(Finished::Disk)
+    let repair = repair.then(|| RepairOptions::for_a_map(true));
+    let outcome = run_with_preview(py, progress, preview, move |observer| {
+        arguments.register(repair, (authalic::register_disks, Finished::Disk), observer)
     })?;
-    let call = finished.call(py, "register_disks", &kept);
-    Registration::new(py, finished, call)
+    let call = outcome.call("register_disks", &kept);
+    Registration::new(py, outcome, call)
 }
 
 /// Registers two closed surfaces by landmarks or features.
@@ -190,6 +196,10 @@ pub fn register_disks(
 ///     Fill all boundary loops of either surface for the time of the call, so that open surfaces can be registered. The
 ///     result is that of the given vertices; `in_holes` has those of the source that come to lie on a filling of the
 ///     target.
+/// repair : bool
+///     Repair both surfaces first, as the function `repair` does: their largest pieces, without pinholes and handles of
+///     noise. The registration is then that of `source_repaired` and `target_repaired`, while landmarks and
+///     features are those of the vertices given. Default False.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between iterations and within long steps; False cancels and returns the best map so far.
 /// preview : callable(positions), optional
@@ -222,7 +232,7 @@ pub fn register_disks(
 #[pyfunction]
 #[pyo3(signature = (source, target, *, source_landmarks=None, target_landmarks=None, energy="surface", weight=1.0,
                     area_weight=1.0, angle_weight=None, weights=None, features=None, feature_weight=None,
-                    position_weight=0.0, fill_holes=false, progress=None, preview=None))]
+                    position_weight=0.0, fill_holes=false, repair=false, progress=None, preview=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn register_spheres(
     py: Python<'_>,
@@ -239,12 +249,13 @@ pub fn register_spheres(
     feature_weight: Option<&Bound<'_, PyAny>>,
     position_weight: f64,
     fill_holes: bool,
+    repair: bool,
     progress: Option<&Bound<'_, PyAny>>,
     preview: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Py<Registration>> {
     let kept = options!(
         py; source_landmarks, target_landmarks, energy, weight, area_weight, angle_weight, weights, features,
-        feature_weight, position_weight, fill_holes
+        feature_weight, position_weight, fill_holes, repair
     )?;
     let energy = choice("energy", energy, &ENERGIES)?;
     let options = RegistrationOptions {
@@ -262,11 +273,12 @@ pub fn register_spheres(
         [weights, features, feature_weight],
         options,
     )?;
-    let finished = run_with_preview(py, progress, preview, move |observer| {
-        arguments.register(authalic::register_spheres, observer).map(Finished::Sphere)
+    let repair = repair.then(|| RepairOptions::for_a_map(false));
+    let outcome = run_with_preview(py, progress, preview, move |observer| {
+        arguments.register(repair, (authalic::register_spheres, Finished::Sphere), observer)
     })?;
-    let call = finished.call(py, "register_spheres", &kept);
-    Registration::new(py, finished, call)
+    let call = outcome.call("register_spheres", &kept);
+    Registration::new(py, outcome, call)
 }
 
 /// The energies, by name.
@@ -303,16 +315,27 @@ impl Arguments {
         Ok(Self { source, target, source_landmarks, target_landmarks, weights, features, options })
     }
 
-    /// Checks the surfaces and registers them.
-    fn register<T>(self, register: Register<T>, observer: &mut dyn Observer) -> Result<T, Error> {
-        let (source, target) = (checked(self.source, Side::Source)?, checked(self.target, Side::Target)?);
-        let landmarks = Landmarks { source: &self.source_landmarks, target: &self.target_landmarks };
+    /// Repairs the surfaces if asked for, checks them and registers them.
+    fn register<T>(
+        self,
+        repair: Option<RepairOptions>,
+        (register, finished): (Register<T>, fn(T) -> Finished),
+        observer: &mut dyn Observer,
+    ) -> Result<Outcome, Error> {
+        let pair = Pair::new([self.source, self.target], repair.as_ref())?;
+        let source_landmarks = pair.source.landmarks(Side::Source, self.source_landmarks)?;
+        let target_landmarks = pair.target.landmarks(Side::Target, self.target_landmarks)?;
+        let features = self.features.map(|features| features.prepared(&pair)).transpose()?;
+        let landmarks = Landmarks { source: &source_landmarks, target: &target_landmarks };
         let options = RegistrationOptions {
             weights: self.weights.as_deref(),
-            features: self.features.as_ref().map(GivenFeatures::view),
+            features: features.as_ref().map(GivenFeatures::view),
             ..self.options
         };
-        register(&source, &target, &landmarks, &options, observer)
+        pair.registered(|pair| {
+            let surfaces = [&pair.source.surface, &pair.target.surface];
+            register(surfaces[0], surfaces[1], &landmarks, &options, observer).map(finished)
+        })
     }
 }
 

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::certificates::Certificates;
-use super::finished::{Finished, Per};
+use super::finished::{Finished, Outcome, Per};
 use super::strain::Strain;
 use crate::arrays::{Reals, from_array, frozen, own_array, real_table};
 use crate::distortion::Distortion;
@@ -18,6 +18,7 @@ use crate::errors::{bad_array, bad_option, to_python, warning};
 use crate::indices::{from_index_list, from_indices, integer_list};
 use crate::provenance::Call;
 use crate::record::{from_dictionary, to_dictionary};
+use crate::repair::Repaired;
 use crate::result::{Restorable, ResultBase, State, made};
 use crate::run::run;
 use crate::values::{Values, from_values};
@@ -124,6 +125,12 @@ pub struct Registration {
     /// By curves: the steps of the harmonic map.
     #[pyo3(get)]
     iterations: usize,
+    /// The repaired source that was registered, with `repair`; else None.
+    #[pyo3(get)]
+    source_repaired: Option<Py<Repaired>>,
+    /// The repaired target, with `repair`; else None.
+    #[pyo3(get)]
+    target_repaired: Option<Py<Repaired>>,
     /// Wall time of the call.
     #[pyo3(get)]
     seconds: f64,
@@ -132,13 +139,23 @@ pub struct Registration {
 
 impl Registration {
     /// The result for Python, and what it was computed from.
-    pub(super) fn new(py: Python<'_>, finished: Finished, call: Call) -> PyResult<Py<Self>> {
+    pub(super) fn new(py: Python<'_>, outcome: Outcome, call: Call) -> PyResult<Py<Self>> {
+        let Outcome { finished, repaired: [source, target], .. } = outcome;
         let warnings = finished.warnings();
         let warnings = warnings.iter().map(|sign| warning(py, sign)).collect::<PyResult<_>>()?;
-        made(py, Self::of(py, finished, warnings)?, call.into())
+        let for_python = |side: Option<authalic::Repaired>| {
+            side.map(|repaired| Repaired::new(py, repaired, None)).transpose()
+        };
+        let repaired = [for_python(source)?, for_python(target)?];
+        made(py, Self::of(py, finished, warnings, repaired)?, call.into())
     }
 
-    fn of(py: Python<'_>, finished: Finished, warnings: Vec<Py<PyAny>>) -> PyResult<Self> {
+    fn of(
+        py: Python<'_>,
+        finished: Finished,
+        warnings: Vec<Py<PyAny>>,
+        [source_repaired, target_repaired]: [Option<Py<Repaired>>; 2],
+    ) -> PyResult<Self> {
         let map = finished.correspondence();
         let (faces, target_faces) = (map.faces(), map.target_faces());
         let [registered, target_registered] = in_domain(&finished).map(|array| from_array(py, array));
@@ -180,6 +197,8 @@ impl Registration {
             warnings,
             energies,
             iterations: figures.iterations,
+            source_repaired,
+            target_repaired,
             seconds: figures.seconds,
             finished: Arc::new(finished),
         })
@@ -274,18 +293,20 @@ fn without_iterations(sphere: &RoughSphere) -> SphereMap {
         distortion: sphere.distortion.clone(),
         targets: sphere.targets.clone(),
         refinement: None,
+        filling: None,
         seconds: 0.0,
     }
 }
 
 impl Restorable for Registration {
-    const FIELDS: &'static [&'static str] = &["warnings", "_record"];
+    const FIELDS: &'static [&'static str] = &["warnings", "source_repaired", "target_repaired", "_record"];
 
     fn restored(state: &State<'_>) -> PyResult<Self> {
         let py = state.py();
         let record = from_dictionary(&state.get("_record")?)?;
         let finished = Finished::of_record(&record).map_err(|error| to_python(py, &error))?;
-        Self::of(py, finished, state.get("warnings")?)
+        let repaired = [state.optional("source_repaired")?, state.optional("target_repaired")?];
+        Self::of(py, finished, state.get("warnings")?, repaired)
     }
 }
 
@@ -296,7 +317,8 @@ impl Registration {
     /// Parameters
     /// ----------
     /// values : (n_t, ...) or (m_t, 3, ...) array
-    ///     One row per target vertex, or one per corner of the given target faces. At a seam of the data, each corner
+    ///     One row per target vertex, or one per corner of the given target faces; with `repair`, of the repaired target,
+    ///     to which `target_repaired.carry` takes data. At a seam of the data, each corner
     ///     of a source face takes the value of the side on which its face lies.
     /// per : "vertex" or "corner", optional
     ///     The elements that `values` has a row for. Default: as its shape says, vertices if both fit.
@@ -482,7 +504,9 @@ impl Registration {
         let inverse = run(py, None, move |observer| finished.inverse(observer))?;
         let warnings = this.warnings.iter().map(|sign| sign.clone_ref(py)).collect();
         let origin = slf.as_super().get().origin().map(|origin| origin.again(py));
-        made(py, Self::of(py, inverse, warnings)?, origin)
+        let [source, target] = [&this.target_repaired, &this.source_repaired]
+            .map(|repaired| repaired.as_ref().map(|repaired| repaired.clone_ref(py)));
+        made(py, Self::of(py, inverse, warnings, [source, target])?, origin)
     }
 
     /// All that makes the registration, for saved ones.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A surface whose boundary loops are closed by cones, so that every corner has an opposite one.
 
-use crate::filling::apex_of;
+use crate::filling::{apex_of, cone};
 use crate::mesh::{Corner, EdgeTable, Topology, Vertex, VertexCorners};
 use crate::repair::draft::Draft;
 use crate::vector::Vector3;
@@ -27,7 +27,7 @@ impl ClosedMesh {
             points.push(apex_of(&rim));
             is_closed_to_loops.push(true);
             hole.iter().for_each(|&vertex| is_closed_to_loops[vertex] = true);
-            faces.extend((0..hole.len()).map(|k| [hole[(k + 1) % hole.len()], hole[k], apex]));
+            faces.extend(cone(&hole, apex));
         }
         let opposite = EdgeTable::new(points.len(), &faces).opposites();
         let corners = VertexCorners::new(points.len(), &faces);

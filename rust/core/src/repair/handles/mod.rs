@@ -20,6 +20,7 @@ mod surgery;
 use super::draft::Draft;
 use super::options::CloseHandles;
 use super::pieces::Pieces;
+use crate::mesh::geometry::edge_lengths;
 use closed::ClosedMesh;
 use crossing::CrossingSearch;
 use generators::generators;
@@ -27,7 +28,13 @@ use loops::Loop;
 use surgery::{cut_open, shortest_apart};
 
 /// A handle of noise has a loop of at most this length, over the square root of the area of its piece.
-const NOISE: f64 = 1.0 / 3.0;
+const NOISE_OF_SIZE: f64 = 0.1;
+
+/// And of at most this length, over the mean edge of its piece.
+const NOISE_OF_EDGES: f64 = 16.0;
+
+/// A loop may be longer than what is asked for by this share, which rounding adds.
+const ROUNDING: f64 = 1e-9;
 
 /// Closes the handles that `which` says, on pieces that are oriented; returns their number. `scale` is the length of the
 /// unit of the draft in that of the vertices.
@@ -35,7 +42,7 @@ pub(super) fn close_handles(draft: &mut Draft, pieces: &Pieces, which: CloseHand
     if which == CloseHandles::Off || pieces.has_one_sided {
         return 0;
     }
-    let limits: Vec<f64> = pieces.areas.iter().map(|&area| limit(which, area, scale)).collect();
+    let limits = limits(draft, pieces, which, scale);
     let mut closed = 0;
     loop {
         // 1. Two loops for each handle
@@ -59,14 +66,29 @@ pub(super) fn close_handles(draft: &mut Draft, pieces: &Pieces, which: CloseHand
     }
 }
 
-/// The length of the longest loop to cut, in the unit of the draft.
-fn limit(which: CloseHandles, area: f64, scale: f64) -> f64 {
+/// The length of the longest loop to cut on each piece, in the unit of the draft.
+fn limits(draft: &Draft, pieces: &Pieces, which: CloseHandles, scale: f64) -> Vec<f64> {
+    let on_all = |length: f64| vec![length; pieces.areas.len()];
     match which {
-        CloseHandles::Off => 0.0,
-        CloseHandles::Noise => NOISE * area.sqrt(),
-        CloseHandles::UpTo(length) => length / scale,
-        CloseHandles::All => f64::INFINITY,
+        CloseHandles::Off => on_all(0.0),
+        CloseHandles::UpTo(length) => on_all(length / scale * (1.0 + ROUNDING)),
+        CloseHandles::All => on_all(f64::INFINITY),
+        CloseHandles::Noise => {
+            let of_piece = pieces.areas.iter().zip(mean_edges(draft, pieces));
+            of_piece.map(|(area, edge)| (NOISE_OF_SIZE * area.sqrt()).min(NOISE_OF_EDGES * edge)).collect()
+        }
     }
+}
+
+/// The mean length of the edges of each piece, as its faces have them.
+fn mean_edges(draft: &Draft, pieces: &Pieces) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); pieces.areas.len()];
+    for (face, &piece) in pieces.of_face.iter().enumerate() {
+        let (length, count) = &mut sums[piece as usize];
+        *length += edge_lengths(draft.corners(face)).iter().sum::<f64>();
+        *count += 3.0;
+    }
+    sums.into_iter().map(|(length, count)| length / count).collect()
 }
 
 /// The piece of a loop; `None` if it runs inside fillings alone.

@@ -237,6 +237,26 @@ def test_register_carries_landmarks_and_values(run, folder):
     assert result.record["folded"] == 0
 
 
+def test_register_repairs_first(run, folder):
+    """Landmarks and values are those of the vertices in the files, which have a loose vertex in front."""
+    source, target = meshes.bumpy_ball(), meshes.radial(lambda x, y, z: 1 + 0.2 * x)
+    loose = [[9.0, 9, 9]]
+    for name, mesh in (("source", source), ("target", target)):
+        given = MeshData(np.vstack([loose, mesh.vertices]), mesh.faces[1:] + 1)
+        write_mesh(folder / f"{name}.obj", given)
+    (folder / "pairs.txt").write_text("1 1\n2 2\n3 3\n6 6\n")
+    write_values(folder / "height.npy", np.append(9, target.vertices[:, 2]))
+    words = ("--landmarks", "pairs.txt", "--pull", "height.npy", "pulled.npy", "--json")
+    assert run("register", "source.obj", "target.obj", "out.npz", *words).code != 0
+    result = run("register", "source.obj", "target.obj", "out.npz", *words, "--repair")
+    assert result.code == 0, result.err
+    assert result.record["repairs"] == {"loose_vertices": 1, "closed_holes": 1}
+    mesh = read_mesh(folder / "out.npz")
+    assert authalic.Surface(mesh.vertices, mesh.faces).is_closed
+    assert np.allclose(mesh.vertices[[0, 1, 2, 5]], target.vertices[[0, 1, 2, 5]], atol=1e-6)
+    assert np.allclose(read_values(folder / "pulled.npy"), mesh.vertices[:, 2], atol=1e-9)
+
+
 def test_register_takes_the_librarys_options(run, folder):
     source, target = meshes.bumpy_ball(), meshes.radial(lambda x, y, z: 1 + 0.2 * x)
     write_mesh(folder / "target.obj", MeshData(*target))

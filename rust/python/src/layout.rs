@@ -4,13 +4,14 @@
 use std::sync::Arc;
 
 use authalic::{LayoutKind, LayoutOptions, Precision, Seam, SphereFaces};
+use numpy::ndarray::{Axis, Slice};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{from_array, reals};
 use crate::errors::{bad_array, bad_option};
 use crate::indices::{from_index_list, from_indices, labels, vertex_set};
-use crate::provenance::{Call, Options, fingerprint, options};
+use crate::provenance::{Call, Fingerprint, Options, fingerprint_of, options};
 use crate::result::{ResultBase, made, restorable};
 use crate::run::run;
 use crate::values::Values;
@@ -101,7 +102,7 @@ pub fn layout(
             candidates: candidates.as_deref(),
             precision,
         };
-        Ok((authalic::layout(&sphere, &options, observer)?, fingerprint(&sphere.image)))
+        Ok((authalic::layout(&sphere, &options, observer)?, fingerprint_of_map(&sphere)))
     })?;
     // 3. The result
     let layout = Layout {
@@ -115,6 +116,16 @@ pub fn layout(
         seconds: layout.seconds,
     };
     made(py, layout, Call::new("layout", &kept, "map", input).into())
+}
+
+/// The fingerprint of a map onto the sphere: of its positions and faces, or of those of its split faces.
+fn fingerprint_of_map(sphere: &SphereFaces) -> Fingerprint {
+    let (positions, faces) = (sphere.image.vertices(), sphere.image.faces());
+    let n_points = if sphere.n_filling == 0 { positions.nrows() } else { sphere.n_vertices };
+    fingerprint_of(
+        positions.slice_axis(Axis(0), Slice::from(..n_points)),
+        faces.slice_axis(Axis(0), Slice::from(..sphere.n_laid_out())),
+    )
 }
 
 impl Arguments<'_, '_> {

@@ -43,6 +43,12 @@ from .frame import Frame
     help="What is kept: shapes between the surfaces, or the papers' energy.  [default: surface]",
 )
 @click.option("--fill-holes", is_flag=True, default=None, help="Fill holes for the time being.")
+@click.option(
+    "--repair",
+    is_flag=True,
+    default=None,
+    help="Repair both first. OUTPUT has the repaired faces; landmarks and values are those of the files.",
+)
 @click.option("--feature-weight", type=float, help="How strongly values pull.  [default: 1]")
 @click.option("--position-weight", type=float, help="How strongly each vertex is pulled to its own position.")
 @click.option("--area-weight", type=float, help="[default: 1]")

@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from .._native import Registration, Surface, register_disks, register_hyperbolic, register_spheres
+from .._native import Registration, Surface, register_disks, register_hyperbolic, register_spheres, repair
 from ..io import FileError, MeshData, Outputs, mesh_format, read_mesh, read_values, value_format
 from ..io.arrays import read_table
 from ..io.files import save_mesh, save_values
 from .record import Progress, Record, given, read_input
+from .repair import repair_figures, repaired_mesh
 
 
 def register_run(
@@ -73,14 +74,18 @@ def register_run(
         _check_rows(pull[0], pulled[0], other)
     # 2. The registration
     found = _register(mesh, other, landmarks, curves, options, progress)
+    record |= repair_figures(found.source_repaired)
     record |= _figures(found) | {"target": str(target), "target_vertices": len(other.vertices)}
     # 3. The files
     with outputs:
         arrays = {"triangles": found.triangles, "barycentric": found.barycentric}
         metadata = dict(other.metadata) | {"record": dict(record), "arrays": arrays}
-        save_mesh(place, MeshData(found.positions, mesh.faces, metadata=metadata), format)
+        faces = repaired_mesh(mesh, found.source_repaired).faces
+        save_mesh(place, MeshData(found.positions, faces, metadata=metadata), format)
         if pull is not None and pulled is not None:
             values, pulled_place, pulled_format = pulled
+            if found.target_repaired is not None:
+                values = found.target_repaired.carry(values, per="vertex")
             save_values(pulled_place, found.pull(values), pulled_format)
             record["pulled"] = str(pull[1])
     return record | {"output": str(output)}
@@ -94,12 +99,14 @@ def _register(
     options: dict[str, Any],
     progress: Progress,
 ) -> Registration:
-    surfaces = Surface(source.vertices, source.faces), Surface(target.vertices, target.faces)
+    surfaces = [(mesh.vertices, mesh.faces) for mesh in (source, target)]
+    if not options.get("repair"):
+        surfaces = [Surface(*surface) for surface in surfaces]
     if curves is not None:
         pair = _curves(curves)
         options |= {f"{side}_curves": pair[side] for side in ("source", "target")}
         return register_hyperbolic(*surfaces, **options, progress=progress)
-    is_closed = surfaces[0].is_closed or (bool(options.get("fill_holes")) and surfaces[1].is_closed)
+    is_closed = _is_closed(surfaces[0]) or (bool(options.get("fill_holes")) and _is_closed(surfaces[1]))
     if landmarks is not None or not is_closed:
         pairs, weights = (np.empty((0, 2), int), None) if landmarks is None else _pairs(landmarks)
         options |= {"source_landmarks": pairs[:, 0], "target_landmarks": pairs[:, 1]}
@@ -122,6 +129,12 @@ def _curves(path: Path) -> dict[str, Any]:
     if not isinstance(pair, dict) or not {"source", "target"} <= pair.keys():
         raise FileError(path, 'it must hold {"source": [[vertices], …], "target": [[vertices], …]}')
     return pair
+
+
+def _is_closed(surface: Surface | tuple[np.ndarray, np.ndarray]) -> bool:
+    """Whether a surface is closed, after its repair where it is yet to be repaired."""
+    checked = surface if isinstance(surface, Surface) else repair(*surface, keep="largest").surface
+    return checked.is_closed
 
 
 def _pairs(path: Path) -> tuple[np.ndarray, np.ndarray | None]:

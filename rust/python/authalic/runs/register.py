@@ -99,9 +99,8 @@ def _register(
     options: dict[str, Any],
     progress: Progress,
 ) -> Registration:
-    surfaces = [(mesh.vertices, mesh.faces) for mesh in (source, target)]
-    if not options.get("repair"):
-        surfaces = [Surface(*surface) for surface in surfaces]
+    arrays = [(mesh.vertices, mesh.faces) for mesh in (source, target)]
+    surfaces: list[Any] = arrays if options.get("repair") else [Surface(*each) for each in arrays]
     if curves is not None:
         pair = _curves(curves)
         options |= {f"{side}_curves": pair[side] for side in ("source", "target")}

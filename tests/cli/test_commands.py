@@ -322,7 +322,14 @@ def test_measure_finds_a_folded_face_in_any_tools_map(run, folder):
     mesh = read_mesh(folder / "sphere.ply")
     mesh.vertices[0] *= -1
     write_mesh(folder / "folded.ply", mesh)
-    assert run("measure", "ball.obj", "folded.ply", "--json").record["folded"] > 0
+    result = run("measure", "ball.obj", "folded.ply", "--json")
+
+    def refuse(word):
+        raise AssertionError(f"{word} is no JSON")
+
+    record = json.loads(result.out, parse_constant=refuse)
+    assert record["folded"] > 0 and record["angle_distortion_max"] is None
+    assert "σ₁/σ₂ mean inf" in run("measure", "ball.obj", "folded.ply").out
 
 
 def test_measure_takes_the_uvs_of_the_file_with_their_seams(run, folder):

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from ..io import Outputs
+from ..io import Outputs, strict_json
 from ..io.errors import require
 from ..runs.record import Record
 
@@ -60,7 +60,7 @@ def write_record(folder: Path, record: Record) -> None:
     path = record_path(folder, record["subject"])
     path.parent.mkdir(parents=True, exist_ok=True)
     with Outputs() as outputs:
-        outputs.add(path).write_text(json.dumps(record), encoding="utf-8")
+        outputs.add(path).write_text(strict_json.dumps(record), encoding="utf-8")
 
 
 def read_records(folder: Path) -> dict[str, Record]:

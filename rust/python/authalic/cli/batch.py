@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Many surfaces: batch."""
 
-import json
 import re
 import sys
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..io import strict_json
 from . import options
 from .frame import Frame
 from .options import Command
@@ -140,7 +140,7 @@ def _run(
 
 def _show(summary: "Summary", frame: Frame) -> None:
     if frame.as_json:
-        print(json.dumps(summary.as_dict()))
+        print(strict_json.dumps(summary.as_dict()))
         return
     for record in summary.failed[:_SHOWN]:
         error = record["error"]

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """What a command prints at its end, and its exit code."""
 
-import json
 import sys
 from collections.abc import Mapping
 from enum import IntEnum
@@ -10,7 +9,7 @@ from typing import Any, TextIO
 import click
 
 from .._native import MeshError, SolverError
-from ..io import FileError, MissingExtra
+from ..io import FileError, MissingExtra, strict_json
 from ..runs.record import problem
 
 
@@ -75,7 +74,7 @@ def show_error(error: BaseException, as_json: bool) -> Exit:
     data = problem(error)  # type: ignore[arg-type]
     data["message"] = in_command_words(data["message"])
     if as_json:
-        print(json.dumps({"error": data | {"exit_code": int(code)}}), file=sys.stderr)
+        print(strict_json.dumps({"error": data | {"exit_code": int(code)}}), file=sys.stderr)
         return code
     print(f"authalic: error: {data['message'] or type(error).__name__}", file=sys.stderr)
     if elements := _elements(data):
@@ -94,7 +93,7 @@ def show_usage_error(error: click.ClickException, as_json: bool) -> Exit:
     """Prints what is wrong with the words of a command."""
     if as_json:
         data = {"message": error.format_message(), "kind": "usage", "exit_code": int(Exit.USAGE)}
-        print(json.dumps({"error": data}), file=sys.stderr)
+        print(strict_json.dumps({"error": data}), file=sys.stderr)
     else:
         error.show()
     return Exit.USAGE
@@ -103,7 +102,7 @@ def show_usage_error(error: click.ClickException, as_json: bool) -> Exit:
 def show_record(record: Mapping[str, Any], as_json: bool, stream: TextIO) -> None:
     """Prints the record of a run: as one line of JSON, or in words."""
     if as_json:
-        print(json.dumps(record), file=stream)
+        print(strict_json.dumps(record), file=stream)
         return
     place = f" -> {record['output']}" if "output" in record else ""
     print(f"{record['input']}{place}", file=stream)
@@ -124,10 +123,10 @@ def show_record(record: Mapping[str, Any], as_json: bool, stream: TextIO) -> Non
 def show_info(record: Mapping[str, Any], as_json: bool, stream: TextIO) -> None:
     """Prints what a mesh is like."""
     if as_json:
-        print(json.dumps(record), file=stream)
+        print(strict_json.dumps(record), file=stream)
         return
     if record["format"] == "result":
-        print(json.dumps(record, indent=2), file=stream)
+        print(strict_json.dumps(record, indent=2), file=stream)
         return
     show_record(record, False, stream)
     for key in ("components", "genus", "boundary_loops", "area", "uv_points"):

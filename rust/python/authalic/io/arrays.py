@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """numpy's files, and text with one row a vertex."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 
+from . import strict_json
 from .errors import FileError
 from .mesh import MeshData, Reals
 
@@ -27,7 +27,7 @@ def write_mesh(path: Path, mesh: MeshData, name: str) -> None:
     if mesh.uv is not None and mesh.uv_faces is not None:
         arrays |= {"uv": mesh.uv, "uv_faces": mesh.uv_faces}
     if "record" in mesh.metadata:
-        arrays["record"] = np.array(json.dumps(mesh.metadata["record"]))
+        arrays["record"] = np.array(strict_json.dumps(mesh.metadata["record"]))
     with open(path, "wb") as file:
         np.savez_compressed(file, **arrays)
 

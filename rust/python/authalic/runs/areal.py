@@ -38,13 +38,14 @@ class ArealFile:
 def areal_distortion(vertices: np.ndarray, faces: np.ndarray, image: np.ndarray) -> np.ndarray:
     """log₂ of each vertex's share of the image's area over its share of the surface's, (n,).
 
-    The area of a vertex is a third of that of its faces. 0 is preserved, 1 is twice as large.
+    The area of a vertex is a third of that of its faces. 0 is preserved, 1 is twice as large, −∞ is nothing.
     """
     shares = []
     for points in (vertices, image):
         areas = _vertex_areas(np.asarray(points, np.float64), faces)
         shares.append(areas / areas.sum())
-    return np.asarray(np.log2(shares[1] / shares[0]))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.log2(shares[1] / shares[0]))
 
 
 def _vertex_areas(points: np.ndarray, faces: np.ndarray) -> np.ndarray:

@@ -69,6 +69,7 @@ ERRORS = {
     "factorization_failed": (
         "is too badly conditioned; dissolve its slivers (Mesh > Clean Up > Degenerate Dissolve)"
     ),
+    "out_of_memory": "has too many vertices for the memory that is free; close other programs or decimate it",
     "cancelled": "cancelled before there was a map without folds; let it run longer",
     "internal": _REPORT,
     # Landmark points

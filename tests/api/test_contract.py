@@ -280,7 +280,7 @@ def test_everything_is_documented(name):
 
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_the_docstrings_have_all_sections_and_name_all_parameters(name):
-    text = getattr(authalic, name).__doc__
+    text = inspect.getdoc(getattr(authalic, name))
     for section in ("Parameters\n------", "Returns\n------", "Raises\n------", "Examples\n------"):
         assert section in text
     for parameter in [*POSITIONAL[name], *KEYWORDS[name]]:

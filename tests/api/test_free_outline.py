@@ -298,3 +298,24 @@ def test_a_long_start_is_heard_of():
     authalic.disk_map(vertices, faces, boundary="free", progress=listen)
     starts = sorted({fraction for fraction, message in heard if message == "Start map"})
     assert starts == pytest.approx([0.0, 0.08, 0.12])
+
+
+def long_tube(rings=7, around=4, step=104.4):
+    """A tube hundreds of times as long as it is wide."""
+    angles = 2 * np.pi * np.arange(around) / around
+    ring = np.stack([np.cos(angles), np.sin(angles), np.zeros(around)], axis=1)
+    vertices = np.concatenate([ring + np.array([0, 0, step * number]) for number in range(rings)])
+    faces = []
+    for row, column in itertools.product(range(rings - 1), range(around)):
+        a, b = row * around + column, row * around + (column + 1) % around
+        faces += [[a, b, b + around], [a, b + around, a + around]]
+    return vertices, np.array(faces)
+
+
+@pytest.mark.parametrize("reports", range(20, 45, 3))
+def test_a_cancelled_map_of_a_long_tube_is_not_folded(reports):
+    numbers = itertools.count(1)
+    result = authalic.disk_map(
+        *long_tube(), boundary="free", fill_holes=True, progress=lambda *_: next(numbers) <= reports
+    )
+    assert result.status == "cancelled" and len(result.distortion.folded) == 0

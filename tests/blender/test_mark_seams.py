@@ -261,7 +261,7 @@ def test_the_rest_of_the_mesh_is_untouched() -> None:
     obj.shape_key_add(name="Basis")
     edge: Any = obj.data.edges[5]
     edge.use_edge_sharp = True
-    obj.data.edges[7].select = True
+    part("blender.selection").select_edges(obj, [tuple(obj.data.edges[7].vertices)])
     position = [tuple(vertex.co) for vertex in obj.data.vertices]
     uv, selected = meshes.uv(obj), [edge.select for edge in obj.data.edges]
     mark()

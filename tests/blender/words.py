@@ -17,6 +17,11 @@ Word = tuple[str, str]
 
 # Names of Blender itself, which it translates: of files, and what every class has.
 _OF_BLENDER = {"rna_type", "bl_idname", "filepath", "filter_glob", "check_existing"}
+# What the name of every property group says; Blender 5.3 has other words for it.
+_OF_NAMES = (
+    bpy.types.PropertyGroup.bl_rna.properties["name"].description,
+    "Unique name used in the code and scripting",
+)
 # Types to which the extension adds properties.
 _EXTENDED = ("Object", "Scene", "WindowManager", "Mesh", "Image", "Screen")
 # Arguments of layouts that are shown.
@@ -59,10 +64,7 @@ def _of_types() -> Iterator[tuple[str, str, str]]:
 def _of_properties(rna: Any, where: str, start: str = "") -> Iterator[tuple[str, str, str]]:
     for prop in rna.properties:
         key = prop.identifier
-        if (
-            key == "name"
-            and prop.description == bpy.types.PropertyGroup.bl_rna.properties["name"].description
-        ):
+        if key == "name" and prop.description in _OF_NAMES:
             continue
         if key in _OF_BLENDER or not key.startswith(start) or prop.is_hidden:
             continue

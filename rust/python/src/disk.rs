@@ -14,6 +14,7 @@ use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, to_python};
 use crate::indices::{from_indices, index_list, narrowed};
 use crate::lookup::{Beyond, Conservative, Invertible, Located, Lookup, Request, Shape, image_of, locate};
+use crate::memory;
 use crate::options::{history, parse_iterations};
 use crate::provenance::{Call, Fingerprint, Origin, options};
 use crate::repair::{Prepared, Repaired, check_no_start};
@@ -473,6 +474,7 @@ pub fn disk_map(
     let repair = repair.then(|| RepairOptions::for_a_map(true));
     let initial = initial.map(|initial| real_table::<2>(initial, "initial")).transpose()?;
     let corners = corners.map(|corners| parse_corners(corners, given.n_vertices())).transpose()?;
+    memory::check(py, memory::MAP, given.n_vertices())?;
     // 2. The run
     let (map, prepared, input) = run(py, progress, move |observer| {
         let input = given.fingerprint();
@@ -585,6 +587,8 @@ pub fn disk_maps(
     let given = surfaces.iter().map(|each| Given::pair(each, names)).collect::<PyResult<Vec<_>>>()?;
     let densities = reals_of_each(py, densities, ["densities", "density"], given.len())?;
     let repair = repair.then(|| RepairOptions::for_a_map(true));
+    let largest = given.iter().map(Given::n_vertices).max().unwrap_or(0);
+    memory::check(py, memory::MAP, largest)?;
     // 2. The run
     let (maps, prepared) = run(py, progress, move |observer| {
         let prepare = |(given, density): (Given, Option<Array1<f64>>)| -> Result<_, Error> {

@@ -14,6 +14,7 @@ mod hints;
 mod indices;
 mod layout;
 mod lookup;
+mod memory;
 mod mesh_objects;
 mod options;
 mod packing;

@@ -14,6 +14,7 @@ use crate::arrays::{from_array, frozen};
 use crate::errors::{bad_option, internal};
 use crate::indices::from_indices;
 use crate::lookup::per_element;
+use crate::memory;
 use crate::options::choice;
 use crate::provenance::{Call, Origin, options};
 use crate::result::{ResultBase, made, restorable};
@@ -271,6 +272,7 @@ pub fn repair(
         keep: choice("keep", keep, &[("all", Keep::All), ("largest", Keep::Largest)])?,
     };
     let given = Given::new(vertices, faces)?;
+    memory::check(py, memory::REPAIR, given.n_vertices())?;
     let (repaired, input) = run(py, None, move |_| {
         let input = given.fingerprint();
         Ok((given.repaired(&options)?, input))

@@ -12,6 +12,7 @@ use pyo3::{Borrowed, FromPyObject, IntoPyObjectExt};
 use crate::arrays::{Reals, from_array, reals};
 use crate::errors::{bad_array, bad_option};
 use crate::indices::{from_index_list, from_indices, index_table};
+use crate::memory;
 use crate::options::choice;
 use crate::provenance::{Call, fingerprint, options};
 use crate::result::{ResultBase, made, restorable};
@@ -359,6 +360,7 @@ pub fn seams(
     let arguments =
         Arguments { target, fixed, weights, front, symmetry, max_islands, overlap, diagonals, method };
     let wishes = arguments.parse(given.n_vertices())?;
+    memory::check(py, memory::MAP, given.n_vertices())?;
     // 2. The run
     let (seams, input) = run(py, progress, move |observer| {
         let surface = given.surface()?;
@@ -493,6 +495,7 @@ pub fn unwrap(
             Some(index_table::<2>(edges.bind(py), "seams", given.n_vertices())?)
         }
     };
+    memory::check(py, memory::MAP, given.n_vertices())?;
     // 2. The run
     let (map, input) = run(py, progress, move |observer| {
         let surface = given.surface()?;

@@ -18,6 +18,7 @@ use crate::errors::{bad_option, to_python};
 use crate::indices::{from_index_list, from_indices, index_table, narrowed};
 use crate::layout::{Arguments, Layout, layout};
 use crate::lookup::{Beyond, Conservative, Invertible, Located, Lookup, Request, Shape, image_of, locate};
+use crate::memory;
 use crate::options::{history, parse_iterations};
 use crate::provenance::{Call, Origin, options};
 use crate::repair::{Prepared, Repaired, check_no_start};
@@ -781,6 +782,7 @@ pub fn sphere_map(
     check_no_start(repair, initial)?;
     let repair = repair.then(|| RepairOptions::for_a_map(false));
     let initial = initial.map(|initial| real_table::<3>(initial, "initial")).transpose()?;
+    memory::check(py, memory::MAP, given.n_vertices())?;
     // 2. The run
     let (mut map, prepared, sphere, input) = run(py, progress, move |observer| {
         let input = given.fingerprint();

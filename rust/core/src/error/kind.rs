@@ -138,6 +138,8 @@ kinds! {
         StillFolded = "still_folded",
         /// A layout of a sphere would fold: faces.
         LayoutFold = "layout_fold",
+        /// There is not enough memory for the run, which was not started.
+        OutOfMemory = "out_of_memory",
         /// The run was cancelled before there was a map.
         Cancelled = "cancelled",
         /// A fault of the library itself.

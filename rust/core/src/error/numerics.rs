@@ -66,6 +66,25 @@ pub enum NumericsError {
         /// The precision asked for.
         precision: &'static str,
     },
+
+    /// A run would need more memory than there is.
+    #[error(
+        "{n_vertices} vertices take {} GB of memory at least, and {} GB are free: close other programs, or \
+         map a coarser mesh",
+        in_gigabytes(*needed), in_gigabytes(*available)
+    )]
+    OutOfMemory {
+        /// The vertices of all surfaces of the run.
+        n_vertices: usize,
+        /// Bytes that the run takes at least.
+        needed: u64,
+        /// Bytes that are free.
+        available: u64,
+    },
+}
+
+fn in_gigabytes(bytes: u64) -> String {
+    format!("{:.1}", bytes as f64 / 1e9)
 }
 
 impl NumericsError {
@@ -77,13 +96,14 @@ impl NumericsError {
             Self::StillFolded { .. } => ErrorKind::StillFolded,
             Self::NoEmbedding { .. } => ErrorKind::NoEmbedding,
             Self::LayoutFolds { .. } => ErrorKind::LayoutFold,
+            Self::OutOfMemory { .. } => ErrorKind::OutOfMemory,
         }
     }
 
     /// The error with other numbers for the faces at fault, as where they are faces of a part of the mesh.
     pub(crate) fn with_faces(mut self, face_of: impl Fn(usize) -> usize) -> Self {
         match &mut self {
-            Self::FactorizationFailed { .. } => {}
+            Self::FactorizationFailed { .. } | Self::OutOfMemory { .. } => {}
             Self::NoHyperbolicMetric { faces }
             | Self::StillFolded { folded: faces, .. }
             | Self::NoEmbedding { folded: faces }
@@ -97,7 +117,7 @@ impl NumericsError {
     /// The faces at fault, where the error has any.
     pub fn elements(&self) -> Option<&Elements> {
         match self {
-            Self::FactorizationFailed { .. } => None,
+            Self::FactorizationFailed { .. } | Self::OutOfMemory { .. } => None,
             Self::NoHyperbolicMetric { faces } | Self::LayoutFolds { faces, .. } => Some(faces),
             Self::StillFolded { folded, .. } | Self::NoEmbedding { folded } => Some(folded),
         }

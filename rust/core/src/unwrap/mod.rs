@@ -20,7 +20,7 @@ use crate::error::Error;
 use crate::mesh::{Face, Surface, Vertex};
 use crate::packing::{self, Margin, PackOptions, Packing, Rotation, pack};
 use crate::parallel;
-use crate::seams::{Island, MapFigures, SeamOptions, figures, seams_and_maps};
+use crate::seams::{Island, MapFigures, SeamMethod, SeamOptions, figures, seams_and_maps};
 use islands::{CutSurface, along};
 
 /// Where the seams of an unwrap come from.
@@ -126,6 +126,17 @@ fn automatic(
     options: &SeamOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<CutSurface, Error> {
+    if options.method == SeamMethod::Cones {
+        // A preview has no maps.
+        let mut phase = Phase { whole: &mut *observer, from: 0.0, to: 0.1 };
+        let (seams, _) = seams_and_maps(surface, options, &mut phase)?;
+        return along(
+            surface,
+            seams.edges.view(),
+            options.overlap,
+            &mut Phase { whole: observer, from: 0.1, to: 1.0 },
+        );
+    }
     let (seams, islands) = seams_and_maps(surface, options, observer)?;
     Ok(CutSurface { islands, edges: seams.edges, length: seams.length, status: seams.status })
 }

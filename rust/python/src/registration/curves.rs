@@ -10,6 +10,7 @@ use super::result::Registration;
 use super::surfaces::{Pair, SOURCE, TARGET, vertex_paths};
 use crate::arrays::real_table;
 use crate::errors::bad_option;
+use crate::memory;
 use crate::options::{choice, metrics, parse_iterations};
 use crate::provenance::options;
 use crate::run::run_with_preview;
@@ -153,6 +154,7 @@ pub fn register_hyperbolic(
     options.heat_tolerance = tolerance.unwrap_or(options.heat_tolerance);
     let source = Given::pair(source, SOURCE)?;
     let target = Given::pair(target, TARGET)?;
+    memory::check(py, memory::REGISTRATION, source.n_vertices() + target.n_vertices())?;
     let source_curves = vertex_paths(source_curves, "source_curves", source.n_vertices())?;
     let target_curves = vertex_paths(target_curves, "target_curves", target.n_vertices())?;
     if repair && (source_sphere.is_some() || target_sphere.is_some()) {

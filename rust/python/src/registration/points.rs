@@ -9,6 +9,7 @@ use super::finished::{Finished, Outcome};
 use super::result::Registration;
 use super::surfaces::{Pair, SOURCE, TARGET};
 use crate::indices::index_list;
+use crate::memory;
 use crate::options::choice;
 use crate::provenance::options;
 use crate::run::run_with_preview;
@@ -302,8 +303,10 @@ impl Arguments {
         [weights, features, feature_weight]: [Option<&Bound<'_, PyAny>>; 3],
         options: RegistrationOptions<'static>,
     ) -> PyResult<Self> {
+        let py = source.py();
         let source = Given::pair(source, SOURCE)?;
         let target = Given::pair(target, TARGET)?;
+        memory::check(py, memory::REGISTRATION, source.n_vertices() + target.n_vertices())?;
         let list = |landmarks: Option<&Bound<'_, PyAny>>, name, n_vertices| {
             landmarks
                 .map_or_else(|| Ok(Vec::new()), |landmarks| index_list(landmarks, name, "pair", n_vertices))

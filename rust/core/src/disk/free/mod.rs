@@ -55,7 +55,7 @@ use stages::by_stages;
 use start::Start;
 use surface::Prepared;
 pub(super) use surface::{Free, QuickStart, Schedule};
-use within_disk::{signed_area, turned};
+use within_disk::{signed_area, turned_without_folds};
 
 /// Ranges of the contacts, from the first descent to the last, in units of the heights beside them.
 const RANGES: [f64; 4] = [0.25, 1e-2, 1e-4, 1e-6];
@@ -138,7 +138,8 @@ impl Free<'_> {
         // 1. A start
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.2 };
         let start = self.start(&prepared, &mut phase)?;
-        let turned = |map| if self.options.initial.is_none() { turned(self.mesh, map) } else { map };
+        let turned =
+            |map| if self.options.initial.is_none() { turned_without_folds(self.mesh, map) } else { map };
         // 2. The descent
         let mut phase = Phase { whole: observer, from: 0.2, to: 1.0 };
         let (map, status, weight) = match start {

@@ -33,8 +33,14 @@ fn center(map: &[[f64; 2]]) -> [f64; 2] {
     [0, 1].map(|axis| 0.5 * (extreme(axis, 1.0) - extreme(axis, -1.0)))
 }
 
-/// The map turned so that the first vertex of the longest boundary loop lies to the right of the mean of all vertices.
-pub(super) fn turned(mesh: &TriangleMesh, map: PlanarMap) -> PlanarMap {
+/// The map turned so that the first vertex of the longest boundary loop lies to the right of the mean of all vertices;
+/// unchanged where the rounding of the rotation folds a sliver.
+pub(super) fn turned_without_folds(mesh: &TriangleMesh, map: PlanarMap) -> PlanarMap {
+    let turned = turned(mesh, map.clone());
+    if certificate::folded(mesh, &turned).is_empty() { turned } else { map }
+}
+
+fn turned(mesh: &TriangleMesh, map: PlanarMap) -> PlanarMap {
     let mean = parallel::sums(map.len(), |v| map[v]).map(|sum| sum / map.len() as f64);
     let first = map[mesh.boundary_loops()[0][0]];
     let [x, y] = [first[0] - mean[0], first[1] - mean[1]];

@@ -46,12 +46,17 @@ import bench.wrap.measures
 import bench.wrap.methods
 import bench.wrap.pairs
 import changes
+import compatibility
 import demo.figures
 import demo.measure
+import fuzz.python
+import fuzz.report
+import fuzz.rust
 import manual
 import pythons
 import steps
 import windows
+from environment import REQUIREMENTS
 from shell import ROOT, CommandFailed, Unavailable, run
 
 ONLY_POSIX = pytest.mark.skipif(os.name == "nt", reason="Windows has no such programs, users or signals")
@@ -709,3 +714,40 @@ def test_the_manual_is_a_page_of_its_own():
         assert part in page, part
     assert "licence" not in page
     assert "picture" not in page
+
+
+def test_what_a_fuzzer_says_is_read():
+    output = (
+        "#2\tINITED cov: 5 ft: 5 corp: 1/1b\n#1024\tNEW    cov: 17 ft: 30 corp: 3/9b exec/s: 10\n"
+        "thread '<unnamed>' (1) panicked at core/src/map.rs:3:4:\nfolded: [7]\n"
+        "SUMMARY: libFuzzer: deadly signal\n"
+    )
+    assert fuzz.report.runs_and_coverage(output) == (1024, 17)
+    assert fuzz.report.problem_in(output) == "folded: [7] at core/src/map.rs:3:4"
+    assert fuzz.report.problem_in("SUMMARY: libFuzzer: timeout\n") == "libFuzzer: timeout"
+    raised = "=== Uncaught Python exception: ===\nKeyError: 'x'\nTraceback\nSUMMARY: libFuzzer: exited\n"
+    assert fuzz.report.problem_in(raised) == "KeyError: 'x'"
+
+
+def test_every_target_of_a_fuzzer_has_its_file():
+    for name in fuzz.rust.TARGETS:
+        assert (ROOT / "rust" / "fuzz" / "fuzz_targets" / f"{name}.rs").exists()
+    manifest = tomllib.loads((ROOT / "rust" / "fuzz" / "Cargo.toml").read_text(encoding="utf-8"))
+    assert {each["name"] for each in manifest["bin"]} == set(fuzz.rust.TARGETS)
+    for name in fuzz.python.TARGETS:
+        assert (ROOT / "scripts" / "lib" / "fuzz" / f"of_{name}.py").exists()
+
+
+def test_a_version_that_is_not_there_is_a_row_of_the_table():
+    def missing():
+        raise Unavailable("no Python 3.99")
+
+    def failing():
+        raise steps.TestsFailed(steps.Count(2, 1), "ended with code 1", "")
+
+    rows = [compatibility._row("Python 3.99", "all tests", check) for check in (missing, failing)]
+    assert [row.is_failed for row in rows] == [False, True]
+    assert "| Python 3.99 | all tests | not run: no Python 3.99 |" in compatibility.table(rows)
+    assert set(compatibility.BLENDERS) <= {
+        path.stem.removeprefix("bpy-") for path in REQUIREMENTS.glob("bpy-*.txt")
+    }

@@ -29,6 +29,7 @@ def _whole(*steps: str) -> Selection:
 
 # The first pattern that fits a file counts (`*` also stands for slashes); {file} is the file itself.
 _RULES: tuple[tuple[str, Selection], ...] = (
+    ("rust/fuzz/*", {}),
     ("rust/core/tests/*", _whole("rustfmt", "clippy", "rust")),
     ("rust/core/*", _whole(*EVERYTHING)),
     ("rust/python/authalic/*", _whole("ruff", *BUILT)),
@@ -57,6 +58,9 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("scripts/docs", {"ruff": (), "python": PROJECT}),
     ("scripts/demo", {"ruff": (), "python": PROJECT}),
     ("scripts/compatibility", {"ruff": (), "python": PROJECT}),
+    ("scripts/fuzz", {"ruff": (), "python": PROJECT}),
+    ("scripts/lib/fuzz/*", {"ruff": (), "python": PROJECT}),
+    ("scripts/requirements/fuzz.txt", {}),
     ("scripts/lib/compatibility.py", {"ruff": (), "python": PROJECT}),
     ("scripts/release", {"ruff": (), "python": PROJECT}),
     ("scripts/lib/release/*", {"ruff": (), "python": PROJECT}),

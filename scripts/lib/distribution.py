@@ -18,7 +18,10 @@ from shell import DIST, OUT, ROOT, Unavailable, content_hash, files_below, run, 
 
 THIRD_PARTY = "THIRD-PARTY-LICENSES.md"
 """The licenses of the crates that are compiled into the wheel."""
-WHEEL_SOURCES = ("Cargo.toml", "Cargo.lock", "pyproject.toml", "README.md", THIRD_PARTY, "rust")
+WHEEL_SOURCES = (
+    *("Cargo.toml", "Cargo.lock", "pyproject.toml", "README.md"),
+    *(THIRD_PARTY, "rust/core", "rust/python"),
+)
 EXTENSION_SOURCES = ("addon", "docs/blender.md", "scripts/lib/manual.py", THIRD_PARTY)
 PORTABLE = ("--zig", "--compatibility", "manylinux_2_28")
 # Blender's names of platforms by what the tags of wheels begin and end with. Blender has no build for musl.

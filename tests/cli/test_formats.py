@@ -315,6 +315,12 @@ def test_files_that_cannot_be_written_are_refused_before_there_is_anything_to_wr
         outputs.add(tmp_path)
 
 
+def test_names_may_be_as_long_as_the_system_allows(tmp_path):
+    path = tmp_path / ("n" * 251 + ".obj")
+    write_mesh(path, MeshData(*meshes.octahedron()))
+    assert len(read_mesh(path).faces) == 8 and len(list(tmp_path.iterdir())) == 1
+
+
 def test_freesurfers_old_formats_are_read_by_nibabel(tmp_path):
     """A quad file: 3-byte integers, coordinates in hundredths; and an old curv file."""
     pytest.importorskip("nibabel")

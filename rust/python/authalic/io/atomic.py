@@ -10,6 +10,8 @@ from .errors import FileError
 
 PREFIX = ".authalic-"
 """Names of files that are not whole yet begin with this."""
+_END = 40
+"""Of a file's name so many characters end its temporary name, which must not be too long either."""
 
 
 class Outputs:
@@ -77,7 +79,7 @@ class Outputs:
             )
         if target in self._places.values():
             raise FileError(path, "two results would be written to this file; give them different names")
-        temporary = target.parent / f"{PREFIX}{os.getpid()}-{os.urandom(4).hex()}-{target.name}"
+        temporary = target.parent / f"{PREFIX}{os.getpid()}-{os.urandom(4).hex()}-{target.name[-_END:]}"
         self._places[temporary] = target
         return temporary
 

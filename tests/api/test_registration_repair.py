@@ -189,6 +189,26 @@ def test_errors_number_the_vertices_given(balls):
     assert (open_target.vertices[caught.value.indices[0]] == cap.vertices[rim]).all(axis=1).any()
 
 
+@pytest.mark.parametrize("side", ["source", "target"])
+def test_what_a_repair_mends_is_told_so(balls, side):
+    sound = balls[0]
+    for bad, words in (
+        (
+            meshes.Mesh(sound.vertices, np.vstack([sound.faces, sound.faces[:1]])),
+            "authalic.repair mends this",
+        ),
+        (
+            meshes.Mesh(sound.vertices[sound.faces].reshape(-1, 3), np.arange(1536).reshape(-1, 3)),
+            "repair=True merges",
+        ),
+        (meshes.torus(), "repair with close_handles=True closes handles"),
+    ):
+        pair = [bad, sound] if side == "source" else [sound, bad]
+        with pytest.raises(authalic.MeshError, match=f"^the {side}: .*{words}") as caught:
+            authalic.register_spheres(*pair, source_landmarks=POLES, target_landmarks=POLES)
+        assert caught.value.side == side
+
+
 def test_maps_of_other_vertices_are_refused():
     mesh = band()
     sphere = mesh.vertices / np.linalg.norm(mesh.vertices, axis=1, keepdims=True)

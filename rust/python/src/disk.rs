@@ -591,13 +591,7 @@ pub fn disk_maps(
     memory::check(py, memory::MAP, largest)?;
     // 2. The run
     let (maps, prepared) = run(py, progress, move |observer| {
-        let prepare = |(given, density): (Given, Option<Array1<f64>>)| -> Result<_, Error> {
-            let input = given.fingerprint();
-            let prepared = Prepared::new(given, density, repair.as_ref());
-            // what a repair cannot mend has no map, but arrays that do not fit are refused
-            if repair.is_none() { Ok((Ok(prepared?), input)) } else { Ok((prepared, input)) }
-        };
-        let prepared = given.into_iter().zip(densities).map(prepare).collect::<Result<Vec<_>, Error>>()?;
+        let prepared = prepared_each(given.into_iter().zip(densities), repair.as_ref())?;
         let with_options = prepared.iter().filter_map(|(each, _)| each.as_ref().ok()).map(|each| {
             let options = DiskMapOptions {
                 method,
@@ -618,26 +612,49 @@ pub fn disk_maps(
     })?;
     // 3. The results
     let mut maps = maps.into_iter();
-    let result = |(prepared, input): (Result<Prepared, Error>, Fingerprint)| {
-        let map = match prepared {
-            Ok(prepared) => {
-                maps.next().flatten().map(|map| prepared.mapped(|_| map).map(|map| (map, prepared)))
-            }
-            Err(error) => Some(Err(error)),
-        };
-        match map {
+    let results = prepared.into_iter().map(|(prepared, input)| match prepared {
+        Err(error) => refused(py, error).map(Some),
+        Ok(prepared) => match maps.next().flatten().map(|map| prepared.mapped(|_| map)) {
             None => Ok(None),
-            Some(Ok((map, Prepared { surface, repaired, .. }))) => {
+            Some(Err(error)) => refused(py, error).map(Some),
+            Some(Ok(map)) => {
+                let Prepared { surface, repaired, .. } = prepared;
                 let repaired = repaired.map(|repaired| Repaired::new(py, repaired, None)).transpose()?;
                 let call = Call::new("disk_maps", &kept, "surface", input);
                 let map = DiskMap::new(py, map, oriented(&surface).view(), repaired, Some(call))?;
                 Ok(Some(map.into_any()))
             }
-            Some(Err(error @ Error::InvalidOption { .. })) => Err(to_python(py, &error)),
-            Some(Err(error)) => Ok(Some(to_python(py, &error).into_value(py).into_any())),
-        }
+        },
+    });
+    results.collect()
+}
+
+/// A surface of many, or why there is none, and the fingerprint of what was given.
+type PreparedOfMany = (Result<Prepared, Error>, Fingerprint);
+
+/// The surfaces with their densities, repaired where there are options for that.
+///
+/// # Errors
+/// Arrays that are no surface; where they are repaired, what no repair mends is an error of its own surface.
+fn prepared_each(
+    given: impl Iterator<Item = (Given, Option<Array1<f64>>)>,
+    repair: Option<&RepairOptions>,
+) -> Result<Vec<PreparedOfMany>, Error> {
+    let prepare = |(given, density): (Given, _)| {
+        let input = given.fingerprint();
+        let prepared = Prepared::new(given, density, repair);
+        if repair.is_none() { Ok((Ok(prepared?), input)) } else { Ok((prepared, input)) }
     };
-    prepared.into_iter().map(result).collect()
+    given.map(prepare).collect()
+}
+
+/// An error as the result of one surface of many; options that are wrong for all are raised.
+fn refused(py: Python<'_>, error: Error) -> PyResult<Py<PyAny>> {
+    let raised = to_python(py, &error);
+    if matches!(error, Error::InvalidOption { .. }) {
+        return Err(raised);
+    }
+    Ok(raised.into_value(py).into_any())
 }
 
 fn parse_method(method: &str) -> PyResult<DiskMethod> {

@@ -94,48 +94,52 @@ pub fn to_python(py: Python<'_>, error: &Error) -> PyErr {
 
 /// The message of an error, with the argument of Python that avoids it.
 fn in_python_words(error: &Error) -> String {
-    match error {
-        Error::Mesh(
-            authalic::MeshError::SeveralComponents { coincident: 1.., .. }
-            | authalic::MeshError::OpenSurface { coincident: 1.., .. },
-        ) => {
-            format!("{error} (repair=True merges them)")
-        }
-        Error::Mesh(
-            authalic::MeshError::SeveralBoundaries { .. } | authalic::MeshError::OpenSurface { .. },
-        ) => {
-            format!("{error} (fill_holes=True fills them)")
-        }
-        Error::OfSurface { error: inner, .. } => match **inner {
+    let hint = match error {
+        Error::Mesh(inner) => hint(inner),
+        Error::OfSurface { error: inner, .. } => match &**inner {
             Error::Mesh(
-                authalic::MeshError::OpenSurface { .. } | authalic::MeshError::SeveralBoundaries { .. },
-            ) => format!("{error} (fill_holes=True fills them for the time of the call)"),
-            _ => error.to_string(),
+                authalic::MeshError::OpenSurface { coincident: 0, .. }
+                | authalic::MeshError::SeveralBoundaries { .. },
+            ) => Some("fill_holes=True fills them for the time of the call"),
+            Error::Mesh(inner) => hint(inner),
+            _ => None,
         },
         Error::Curves(CurveError::LoopCounts { .. } | CurveError::LoopSides { .. }) => {
-            format!("{error} (fill_holes=True fills them for the time of the call)")
+            Some("fill_holes=True fills them for the time of the call")
         }
         Error::Landmarks(LandmarkError::TooFew { needed: 2, .. }) => {
-            format!("{error}, or features=, with which any number will do")
+            return format!("{error}, or features=, with which any number will do");
         }
-        Error::Mesh(
-            authalic::MeshError::NonFinite { .. }
-            | authalic::MeshError::RepeatedVertex { .. }
-            | authalic::MeshError::DuplicateFaces { .. }
-            | authalic::MeshError::ZeroArea { .. }
-            | authalic::MeshError::NonManifoldEdges { .. }
-            | authalic::MeshError::NonManifoldVertices { .. }
-            | authalic::MeshError::UnreferencedVertices { .. },
-        ) => format!("{error} (authalic.repair mends this)"),
-        Error::Mesh(
-            authalic::MeshError::ClosedSurface { .. }
-            | authalic::MeshError::HasHandles { .. }
-            | authalic::MeshError::SphereHasHandles { .. }
-            | authalic::MeshError::GenusNotZero { .. },
-        ) => format!(
-            "{error} (unwrap with seams=\"auto\" cuts any surface open, repair with close_handles=True closes handles)"
+        _ => None,
+    };
+    hint.map_or_else(|| error.to_string(), |hint| format!("{error} ({hint})"))
+}
+
+/// What mends a mesh in Python.
+fn hint(error: &authalic::MeshError) -> Option<&'static str> {
+    use authalic::MeshError as Of;
+    match error {
+        Of::SeveralComponents { coincident: 1.., .. } | Of::OpenSurface { coincident: 1.., .. } => {
+            Some("repair=True merges them")
+        }
+        Of::SeveralBoundaries { .. } | Of::OpenSurface { .. } => Some("fill_holes=True fills them"),
+        Of::NoMainPiece { .. } => {
+            Some("repair takes merge=distance and keep=\"largest\", cut returns the pieces")
+        }
+        Of::NonFinite { .. }
+        | Of::RepeatedVertex { .. }
+        | Of::DuplicateFaces { .. }
+        | Of::ZeroArea { .. }
+        | Of::NonManifoldEdges { .. }
+        | Of::NonManifoldVertices { .. }
+        | Of::UnreferencedVertices { .. } => Some("authalic.repair mends this"),
+        Of::ClosedSurface { .. }
+        | Of::HasHandles { .. }
+        | Of::SphereHasHandles { .. }
+        | Of::GenusNotZero { .. } => Some(
+            "unwrap with seams=\"auto\" cuts any surface open, repair with close_handles=True closes handles",
         ),
-        error => error.to_string(),
+        _ => None,
     }
 }
 

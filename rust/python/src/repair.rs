@@ -215,7 +215,7 @@ fn from_options<T: Copy + Into<usize>>(py: Python<'_>, list: &[Option<T>]) -> Py
 /// close_handles : bool, float or "noise"
 ///     The handles to close: all, none (default), or those that a loop of at most this length opens, in the unit of the
 ///     vertices. The surface is cut along the loop and closed on both sides, which fills a tunnel or cuts a bridge,
-///     whichever loop is shorter. "noise": loops of at most 16 mean edges of their piece, and of at most a tenth of
+///     whichever loop is shorter. "noise": loops of at most 24 mean edges of their piece, and of at most a tenth of
 ///     √area, with its area.
 /// keep : {"all", "largest"}
 ///     The pieces to keep: all, or the one of the largest area.
@@ -377,12 +377,18 @@ impl Prepared {
 
     /// The vertices that landmarks became.
     pub fn landmarks(&self, side: Side, given: Vec<usize>) -> Result<Vec<usize>, Error> {
-        self.repaired.as_ref().map_or(Ok(given.clone()), |repaired| repaired.landmarks(side, &given))
+        match &self.repaired {
+            Some(repaired) => repaired.landmarks(side, &given),
+            None => Ok(given),
+        }
     }
 
     /// The paths that curves became.
     pub fn curves(&self, side: Side, given: Vec<Vec<usize>>) -> Result<Vec<Vec<usize>>, Error> {
-        self.repaired.as_ref().map_or(Ok(given.clone()), |repaired| repaired.curves(side, &given))
+        match &self.repaired {
+            Some(repaired) => repaired.curves(side, &given),
+            None => Ok(given),
+        }
     }
 
     /// Values (n, k) of the vertices.

@@ -23,7 +23,7 @@ pub enum CloseHandles {
     /// None.
     #[default]
     Off,
-    /// Those as small as the noise of a mesh: that a loop opens whose length is at most 16 mean edges of their piece,
+    /// Those as small as the noise of a mesh: that a loop opens whose length is at most 24 mean edges of their piece,
     /// and at most a tenth of √area, of its area.
     Noise,
     /// Those that a loop of at most this length opens.

@@ -31,7 +31,7 @@ use surgery::{cut_open, shortest_apart};
 const NOISE_OF_SIZE: f64 = 0.1;
 
 /// And of at most this length, over the mean edge of its piece.
-const NOISE_OF_EDGES: f64 = 16.0;
+const NOISE_OF_EDGES: f64 = 24.0;
 
 /// A loop may be longer than what is asked for by this share, which rounding adds.
 const ROUNDING: f64 = 1e-9;

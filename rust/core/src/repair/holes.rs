@@ -58,11 +58,12 @@ fn chosen(
 
 /// Closes one hole, by a single face where `may_be_face` and that has an area.
 pub(super) fn close(draft: &mut Draft, hole: &[Vertex], may_be_face: bool) {
-    if let (&[a, b, c], true) = (hole, may_be_face) {
-        if is_fat([a, b, c].map(|vertex| draft.points[vertex])) {
-            draft.faces.push([b, a, c]);
-            return;
-        }
+    if let &[a, b, c] = hole
+        && may_be_face
+        && is_fat([a, b, c].map(|vertex| draft.points[vertex]))
+    {
+        draft.faces.push([b, a, c]);
+        return;
     }
     membrane(hole, &mut draft.points, &mut draft.faces);
 }

@@ -26,7 +26,10 @@ _FOLDER = "tests/compatibility"
 _NUMPYS = {"oldest": "numpy-1.26", "newest": "numpy-2"}
 _ONLY_NEWEST = ("3.13", "3.14")
 # What a version of Python or numpy could break: types and layouts of arrays, threads, signals, processes.
-_FEW = ("contract", "arrays", "surface", "errors", "results", "processes", "disk_map", "threads", "hostile")
+_FEW = (
+    *("contract", "arrays", "surface", "errors", "results", "processes", "disk_map", "free_outline"),
+    *("threads", "memory", "hostile"),
+)
 _DEBIAN = "sid"
 """The release of Debian with a Python that is newer than this machine's."""
 

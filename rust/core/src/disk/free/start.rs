@@ -8,6 +8,7 @@ use super::starts;
 use super::surface::{Free, Prepared, QuickStart, Schedule};
 use crate::codomain::planar::PlanarMap;
 use crate::control::{History, Observer, Rising, Status, Watch};
+use crate::disk::certificate;
 use crate::disk::holes;
 use crate::disk::options::{Boundary, DiskMapOptions};
 use crate::disk::run::Run;
@@ -116,8 +117,11 @@ impl Free<'_> {
             let run = Run { mesh, targets, options: &options, n_given_faces: self.mesh.n_faces() };
             let (mut map, status) = run.renumbered(&mut History::start(), observer)?;
             map.truncate(self.mesh.n_vertices());
+            // Rounding may fold slivers of a scaled map.
+            let scaled = of_area_one(prepared.energy, map.clone());
+            let map = if certificate::folded(self.mesh, &scaled).is_empty() { scaled } else { map };
             let is_cancelled = status == Status::Cancelled;
-            Ok((of_area_one(prepared.energy, map), is_cancelled.then_some(Status::Cancelled)))
+            Ok((map, is_cancelled.then_some(Status::Cancelled)))
         };
         let (map, status) = evened_out(DISK_WEIGHT, Some(DISK_ITERATIONS))?;
         if status.is_some() || prepared.energy.value(&map, LEAST_WEIGHT) <= COLLAPSED {

@@ -69,6 +69,19 @@ def test_weights_out_of_range_are_plain_value_errors(pair, name, value):
 
 
 @both
+def test_one_of_areas_and_angles_must_count(pair):
+    error = refused(
+        pair,
+        ValueError,
+        "area_weight must be a finite number > 0 where angle_weight is 0, but is 0",
+        energy="surface",
+        area_weight=0.0,
+        angle_weight=0.0,
+    )
+    assert error.kind == "invalid_option"
+
+
+@both
 def test_what_areas_alone_do_not_weigh_is_refused_with_the_remedy(pair):
     soft = np.full(len(pair.source_landmarks), np.inf)
     soft[1] = 2.0

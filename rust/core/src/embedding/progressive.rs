@@ -26,6 +26,9 @@ const SHAPE: f64 = 0.3;
 /// λ of the sweeps over a whole map, from the first to the last.
 const RELAXED_SHAPES: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
 
+/// Powers of the targets for which double precision may suffice where it does not for the targets themselves.
+const POWERS: [f64; 3] = [0.5, 0.25, 0.0];
+
 /// Newton steps of a vertex that comes back.
 const NEWTON_STEPS: usize = 5;
 
@@ -65,9 +68,7 @@ pub fn progressive_sphere(
     targets: &[f64],
     observer: &mut dyn Observer,
 ) -> Result<Vec<Vector3>, Stop> {
-    let mut embedding = Embedding::new(mesh, targets);
-    embedding.build(observer)?;
-    Ok(embedding.places)
+    built(mesh, targets, observer)
 }
 
 /// The progressive map of a surface with one boundary loop and no handle onto the unit disk.
@@ -82,9 +83,25 @@ pub fn progressive_disk(
     targets: &[f64],
     observer: &mut dyn Observer,
 ) -> Result<Vec<[f64; 2]>, Stop> {
-    let mut embedding = Embedding::new(mesh, targets);
-    embedding.build(observer)?;
-    Ok(embedding.places.into_iter().map(|Vector3([u, v, _])| [u, v]).collect())
+    let places = built(mesh, targets, observer)?;
+    Ok(places.into_iter().map(|Vector3([u, v, _])| [u, v]).collect())
+}
+
+/// The places of all vertices, for the targets, or for targets nearer to each other if there is no room.
+fn built(mesh: &TriangleMesh, targets: &[f64], observer: &mut dyn Observer) -> Result<Vec<Vector3>, Stop> {
+    let build = |targets: &[f64], observer: &mut dyn Observer| {
+        let mut embedding = Embedding::new(mesh, targets);
+        embedding.build(observer).map(|()| embedding.places)
+    };
+    let mut places = build(targets, observer);
+    for power in POWERS {
+        if places != Err(Stop::NoRoom) {
+            break;
+        }
+        let nearer: Vec<f64> = targets.iter().map(|target| target.powf(power)).collect();
+        places = build(&nearer, &mut Phase { whole: observer, from: 1.0, to: 1.0 });
+    }
+    places
 }
 
 /// A map without folds onto the sphere, relaxed by sweeps of one-vertex Newton steps that fold no face, with a falling

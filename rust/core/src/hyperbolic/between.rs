@@ -8,7 +8,7 @@ use crate::control::{History, Observer, Status};
 use crate::location::{Location, points_on};
 use crate::mesh::{TriangleMesh, Vertex};
 use crate::registration::Signals;
-use crate::registration::surface::{FaceEnergy, Start, SurfaceProblem, descend};
+use crate::registration::surface::{Start, SurfaceProblem, descend};
 use crate::vector::Vector3;
 
 /// Two surfaces with a map that takes curves to curves.
@@ -41,7 +41,6 @@ impl Between<'_, '_> {
         let mut held: Vec<bool> =
             Vertex::all(source.n_vertices()).map(|vertex| source.is_boundary(vertex)).collect();
         self.curves.source.iter().flatten().for_each(|&vertex| held[vertex] = true);
-        let HyperbolicOptions { area_weight, angle_weight, .. } = *self.options;
         let problem = SurfaceProblem {
             source,
             target,
@@ -52,7 +51,7 @@ impl Between<'_, '_> {
             pulls: Vec::new(),
             signals,
             start: Start::Domain,
-            face_energy: FaceEnergy { area_weight, angle_weight },
+            face_energy: self.options.face_energy(),
         };
         let descended = descend(&problem, start, history, observer);
         (descended.locations, descended.status)

@@ -7,7 +7,8 @@ use super::metric::MetricMethod;
 use crate::arrays::rows_of;
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::registration::{Features, Signals, check_weight};
+use crate::registration::surface::FaceEnergy;
+use crate::registration::{Features, Signals, check_face_energy, check_weight};
 use crate::vector::Vector3;
 
 /// The method that minimizes the harmonic energy.
@@ -95,10 +96,14 @@ impl HyperbolicOptions<'_> {
                 expected: "a finite number ≥ 0".into(),
             });
         }
-        check_weight("area_weight", self.area_weight)?;
-        check_weight("angle_weight", self.angle_weight)?;
+        check_face_energy(self.face_energy())?;
         check_weight("position_weight", self.position_weight)?;
         if self.energy == HyperbolicEnergy::Harmonic { self.check_harmonic() } else { Ok(()) }
+    }
+
+    /// The energy of a face between the surfaces.
+    pub(super) fn face_energy(&self) -> FaceEnergy {
+        FaceEnergy { area_weight: self.area_weight, angle_weight: self.angle_weight }
     }
 
     /// Refuses what only the energy between the surfaces weighs.

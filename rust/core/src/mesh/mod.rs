@@ -7,6 +7,7 @@
 pub(crate) mod bisection;
 pub(super) mod corners;
 mod cut;
+mod edge_distances;
 mod edges;
 mod fans;
 pub mod geometry;
@@ -23,6 +24,7 @@ mod validate;
 
 pub(crate) use corners::{EdgeTable, VertexCorners};
 pub use cut::Patch;
+pub(crate) use edge_distances::edge_distances;
 pub(crate) use edges::Edges;
 pub(crate) use fans::fans;
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //! The validated triangle mesh.
 
 use super::corners::{EdgeTable, VertexCorners};
+use super::edge_distances::edge_distances;
 use super::orientation::Orientation;
 use super::topology::Topology;
 use super::{Corner, Face, Vertex, geometry, validate};
@@ -198,6 +199,16 @@ impl TriangleMesh {
     /// The corners at a vertex, in ascending order.
     pub fn vertex_corners(&self, vertex: Vertex) -> &[Corner] {
         self.corners.of(vertex)
+    }
+
+    /// The distance along edges of each vertex from the nearest of some vertices, (n,), in units of [`Self::points`];
+    /// infinite beyond `most`.
+    pub(crate) fn distances_along_edges(
+        &self,
+        sources: impl IntoIterator<Item = Vertex>,
+        most: f64,
+    ) -> Vec<f64> {
+        edge_distances(&self.points, &self.faces, &self.corners, sources, most)
     }
 
     /// The boundary loops, the surface on the left of travel: the longest first, each from its smallest

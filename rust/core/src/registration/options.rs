@@ -69,7 +69,10 @@ impl RegistrationOptions<'_> {
     /// Refuses options out of range and weights that do not fit the number of pairs.
     pub(super) fn check(&self, n_pairs: usize) -> Result<(), Error> {
         check_angle_weight(self.angle_weight.unwrap_or(0.0), true)?;
-        check_weight("area_weight", self.area_weight)?;
+        match self.energy {
+            Energy::Area => check_weight("area_weight", self.area_weight)?,
+            Energy::Surface => check_face_energy(self.face_energy())?,
+        }
         check_weight("position_weight", self.position_weight)?;
         if !(self.weight > 0.0 && self.weight.is_finite()) {
             return Err(refused("weight", self.weight, "a finite number > 0"));
@@ -160,6 +163,17 @@ impl RegistrationOptions<'_> {
     /// How strongly a pair of landmarks pulls; infinite if it is exact.
     pub(super) fn pair_weight(&self, pair: usize) -> f64 {
         self.weights.map_or(f64::INFINITY, |weights| weights[pair])
+    }
+}
+
+/// Refuses exponents that are negative or not finite, and two that are 0, with which no map is better than another.
+pub(crate) fn check_face_energy(FaceEnergy { area_weight, angle_weight }: FaceEnergy) -> Result<(), Error> {
+    check_weight("area_weight", area_weight)?;
+    check_weight("angle_weight", angle_weight)?;
+    if area_weight + angle_weight > 0.0 {
+        Ok(())
+    } else {
+        Err(refused("area_weight", area_weight, "a finite number > 0 where angle_weight is 0"))
     }
 }
 

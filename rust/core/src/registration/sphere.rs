@@ -9,6 +9,7 @@ use std::borrow::Cow;
 use super::between::{Between, Lowered};
 use super::coarse_to_fine::CoarsePair;
 use super::correspondence::{Correspondence, Registered, meshes};
+use super::extremities::with_extremities;
 use super::feature_start::{OnSphere, aligned};
 use super::features::Signals;
 use super::filling::Filling;
@@ -105,7 +106,7 @@ pub fn register_spheres(
         is_coarse: false,
     };
     let laid = match options.energy {
-        Energy::Area => pair.laid(options.angle_weight_in_domain(), &mut history, observer)?,
+        Energy::Area => pair.laid(options.angle_weight_in_domain(), landmarks, &mut history, observer)?,
         Energy::Surface => pair.descended(&mut history, observer)?,
     };
     let Laid { maps: [f0, f1], registered: [registered, target_registered], locations, status, .. } = laid;
@@ -184,21 +185,22 @@ impl Pair<'_, '_> {
             let start = Start::Coarse { is_brief: self.is_coarse };
             return Ok(self.lowered(laid, start, history, &mut phase));
         }
-        let weights =
-            if self.is_laid_by_landmarks() { &START_ANGLE_WEIGHTS[..] } else { &[FEATURE_ANGLE_WEIGHT] };
+        let with_extremities = with_extremities(self.meshes, self.landmarks);
+        let starts = self.starts(with_extremities.as_ref());
         let mut best: Option<Laid> = None;
-        for (k, &angle_weight) in weights.iter().enumerate() {
-            let share = |k: usize| k as f64 / weights.len() as f64;
+        for (k, (angle_weight, landmarks)) in starts.iter().enumerate() {
+            let share = |k: usize| k as f64 / starts.len() as f64;
             let mut phase = Phase { whole: observer, from: share(k), to: share(k + 1) };
             let mut in_domain = Phase { whole: &mut phase, from: 0.0, to: SHARE_OF_DOMAIN };
-            let laid = match self.laid(angle_weight, history, &mut in_domain) {
+            let laid = match self.laid(*angle_weight, landmarks, history, &mut in_domain) {
                 Err(Error::CancelledEarly) if best.is_some() => break,
                 laid => laid?,
             };
             let mut phase = Phase { whole: &mut phase, from: SHARE_OF_DOMAIN, to: 1.0 };
             let laid = self.lowered(laid, Start::Domain, history, &mut phase);
             let is_last = laid.status == Status::Cancelled || laid.energy < 1.0 + ISOMETRY;
-            if best.as_ref().is_none_or(|best| laid.energy < best.energy) {
+            let order = |laid: &Laid| (self.n_apart(laid), laid.energy);
+            if best.as_ref().is_none_or(|best| order(&laid) < order(best)) {
                 best = Some(laid);
             }
             if is_last {
@@ -227,11 +229,7 @@ impl Pair<'_, '_> {
         let mut phase = Phase { whole: observer, from: 0.1, to: 0.9 };
         let mut unseen = |fraction: f64, message: &str| phase.progress(fraction, message);
         let laid = pair.descended(history, &mut unseen)?;
-        let [ours, theirs] = &laid.registered;
-        let is_apart = |(pair, [p, q]): (usize, &[Vector3; 2])| {
-            self.options.pair_weight(pair).is_infinite() && p.distance(*q) > MET
-        };
-        if pairs(landmarks, ours, theirs).iter().enumerate().any(is_apart) {
+        if pair.n_apart(&laid) > 0 {
             return Ok(None);
         }
         // 3. Taken to the whole
@@ -282,6 +280,28 @@ impl Pair<'_, '_> {
         Laid { maps: laid.maps, registered: [registered, target_registered], locations, energy, status }
     }
 
+    /// The number of exact pairs of landmarks that do not meet.
+    fn n_apart(&self, laid: &Laid) -> usize {
+        let [ours, theirs] = &laid.registered;
+        let is_apart = |(pair, [p, q]): &(usize, [Vector3; 2])| {
+            self.options.pair_weight(*pair).is_infinite() && p.distance(*q) > MET
+        };
+        pairs(self.landmarks, ours, theirs).into_iter().enumerate().filter(is_apart).count()
+    }
+
+    /// Starts of the descent: the angle weight of the maps, and the landmarks that meet in them.
+    fn starts<'a>(&'a self, with_extremities: Option<&'a [Vec<usize>; 2]>) -> Vec<(f64, Landmarks<'a>)> {
+        let [keeps_shapes, keeps_areas] = START_ANGLE_WEIGHTS;
+        let given = *self.landmarks;
+        match with_extremities {
+            _ if !self.is_laid_by_landmarks() => vec![(FEATURE_ANGLE_WEIGHT, given)],
+            None => vec![(keeps_shapes, given), (keeps_areas, given)],
+            Some([source, target]) => {
+                vec![(keeps_shapes, Landmarks { source, target }), (keeps_shapes, given)]
+            }
+        }
+    }
+
     fn is_laid_by_landmarks(&self) -> bool {
         self.landmarks.source.len() >= fewest(CanonicalDomain::Sphere)
     }
@@ -290,10 +310,11 @@ impl Pair<'_, '_> {
     fn laid(
         &self,
         angle_weight: f64,
+        landmarks: &Landmarks<'_>,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<Laid, Error> {
-        let &Self { meshes: [source, target], landmarks, signals, options, .. } = self;
+        let &Self { meshes: [source, target], signals, options, .. } = self;
         // 1. Both surfaces to the sphere
         let alone = SphereMapOptions { angle_weight, ..Default::default() };
         let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {

@@ -7,14 +7,11 @@
 //!
 //! Cost: O(m log m).
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
 use ndarray::{Array1, Array2};
 
 use crate::arrays::from_rows;
 use crate::mesh::geometry::{face_areas, normalized, triangle};
-use crate::mesh::{Face, Vertex, VertexCorners};
+use crate::mesh::{Face, Vertex, VertexCorners, edge_distances};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -152,31 +149,10 @@ fn faces_near(
     vertices: &[usize],
     radius: f64,
 ) -> Vec<Face> {
-    let mut distance = vec![f64::INFINITY; points.len()];
-    let mut is_near = vec![false; faces.len()];
-    // the bits of positive numbers are ordered as the numbers are
-    let mut queue = BinaryHeap::new();
-    for vertex in vertices.iter().map(|&vertex| Vertex::new(vertex)) {
-        distance[vertex] = 0.0;
-        queue.push(Reverse((0.0_f64.to_bits(), vertex)));
-    }
-    while let Some(Reverse((bits, vertex))) = queue.pop() {
-        let reached = f64::from_bits(bits);
-        if reached > distance[vertex] {
-            continue;
-        }
-        for &corner in corners.of(vertex) {
-            is_near[corner.face()] = true;
-            for neighbor in faces[corner.face()] {
-                let through = reached + points[vertex].distance(points[neighbor]);
-                if through < distance[neighbor] && through <= radius {
-                    distance[neighbor] = through;
-                    queue.push(Reverse((through.to_bits(), neighbor)));
-                }
-            }
-        }
-    }
-    (0..faces.len()).map(Face::new).filter(|&face| is_near[face]).collect()
+    let sources = vertices.iter().map(|&vertex| Vertex::new(vertex));
+    let distances = edge_distances(points, faces, corners, sources, radius);
+    let is_near = |&face: &Face| faces[face].iter().any(|&vertex| distances[vertex].is_finite());
+    (0..faces.len()).map(Face::new).filter(is_near).collect()
 }
 
 #[cfg(test)]

@@ -51,6 +51,7 @@ impl Between<'_, '_> {
             pulls: Vec::new(),
             signals,
             start: Start::Domain,
+            is_coarse: false,
             face_energy: self.options.face_energy(),
         };
         let descended = descend(&problem, start, history, observer);

@@ -26,6 +26,8 @@ pub(super) struct Between<'a, 'f> {
     pub options: &'a RegistrationOptions<'f>,
     /// Where the map comes from.
     pub start: Start,
+    /// Whether the surfaces are coarse meshes of others.
+    pub is_coarse: bool,
 }
 
 /// Two surfaces after the descent.
@@ -47,7 +49,9 @@ impl Between<'_, '_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Lowered {
-        let Self { source, target, target_points, domain, target_in_domain, options, start, .. } = self;
+        let Self {
+            source, target, target_points, domain, target_in_domain, options, start, is_coarse, ..
+        } = self;
         let (held, pulls) = self.held_and_pulled();
         let mut signals = self.signals;
         if options.position_weight > 0.0 {
@@ -65,6 +69,7 @@ impl Between<'_, '_> {
             pulls,
             signals,
             start,
+            is_coarse,
             face_energy,
         };
         let Descended { locations, energy, status } = descend(&problem, map, history, observer);

@@ -105,6 +105,7 @@ pub fn register_disks(
             signals,
             options,
             start: Start::Domain,
+            is_coarse: false,
         };
         let lowered = between.lower(locations, &mut history, &mut phase);
         (locations, met.source, status) = (lowered.locations, lowered.registered, lowered.status);

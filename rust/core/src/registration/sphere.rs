@@ -182,8 +182,7 @@ impl Pair<'_, '_> {
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.5 };
         if let Some(laid) = self.laid_coarse_to_fine(history, &mut phase)? {
             let mut phase = Phase { whole: observer, from: 0.5, to: 1.0 };
-            let start = Start::Coarse { is_brief: self.is_coarse };
-            return Ok(self.lowered(laid, start, history, &mut phase));
+            return Ok(self.lowered(laid, Start::Coarse, history, &mut phase));
         }
         let with_extremities = with_extremities(self.meshes, self.landmarks);
         let starts = self.starts(with_extremities.as_ref());
@@ -273,6 +272,7 @@ impl Pair<'_, '_> {
             signals: self.signals.clone(),
             options: self.options,
             start,
+            is_coarse: self.is_coarse,
         };
         let Lowered { locations, registered, energy, status } =
             between.lower(locations.clone(), history, observer);

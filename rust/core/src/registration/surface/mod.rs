@@ -61,7 +61,7 @@ const STAGES: [Stage; 4] = [
 
 /// The stages from a map between coarse meshes of the surfaces, which begin with sweeps; and those of large ones, and of
 /// meshes that are themselves coarse.
-const REFINING: [Stage; 2] = [Stage::new(1.0, 0.0, 1, 6), Stage::new(0.1, 3.0, 12, 20)];
+const REFINING: [Stage; 2] = [Stage::new(1.0, 0.0, 1, 6), Stage::new(0.1, 3.0, 24, 20)];
 const REFINING_BRIEFLY: [Stage; 2] = [Stage::new(1.0, 0.0, 1, 4), Stage::new(0.1, 3.0, 2, 8)];
 
 /// Sources with more vertices are large.
@@ -76,8 +76,10 @@ pub(crate) const ISOMETRY: f64 = 1e-6;
 /// Relative decrease of the energy by a step below which it is small; two small ones in turn end the steps.
 const SMALL_STEP: f64 = 1e-4;
 
-/// Relative decrease of the energy by a round below which the map is stationary.
+/// Relative decrease of the energy by a round below which the map is stationary; and below which that of coarse meshes
+/// is left to the descent that follows.
 const SMALL_ROUND: f64 = 1e-4;
+const SMALL_COARSE_ROUND: f64 = 1e-3;
 
 const MESSAGE: &str = "Keeping shapes";
 
@@ -102,8 +104,8 @@ pub(crate) fn descend(
     // 1. An isometry is the minimum
     let stages: &[Stage] = match problem.start {
         Start::Domain => &STAGES,
-        Start::Coarse { is_brief } if is_brief || problem.source.n_vertices() > LARGE => &REFINING_BRIEFLY,
-        Start::Coarse { .. } => &REFINING,
+        Start::Coarse if problem.is_coarse || problem.source.n_vertices() > LARGE => &REFINING_BRIEFLY,
+        Start::Coarse => &REFINING,
     };
     let mut energy = SurfaceEnergy::new(problem, stages[0].guard);
     let map: Vec<Placed> = parallel::map(start.len(), |vertex| energy.target.placed(start[vertex]));
@@ -129,6 +131,7 @@ pub(crate) fn descend(
         factor: &mut factor,
         colors: &colors,
         done: 0,
+        small_round: if problem.is_coarse { SMALL_COARSE_ROUND } else { SMALL_ROUND },
         n_rounds: stages.iter().map(|stage| stage.rounds).sum(),
         target_points: problem.target_points,
     };
@@ -180,6 +183,8 @@ struct Descent<'a> {
     /// Rounds done, and the most of all stages.
     done: usize,
     n_rounds: usize,
+    /// Relative decrease of the energy by a round that ends a stage.
+    small_round: f64,
     /// The target's vertices as given.
     target_points: &'a [Vector3],
 }
@@ -195,7 +200,7 @@ impl Descent<'_> {
             moving.sweep(self.colors);
             self.done += 1;
             let after = moving.energy.value(&moving.map);
-            if before - after <= SMALL_ROUND * before {
+            if before - after <= self.small_round * before {
                 return Status::Converged;
             }
         }

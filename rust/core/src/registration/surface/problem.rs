@@ -23,8 +23,8 @@ pub(crate) struct Pull {
 pub(crate) enum Start {
     /// From maps of both surfaces to the domain.
     Domain,
-    /// From coarse meshes that are registered; the descent is brief where another one follows on a finer mesh.
-    Coarse { is_brief: bool },
+    /// From coarse meshes that are registered.
+    Coarse,
 }
 
 /// A map of one surface onto another whose energy is to be lowered.
@@ -48,6 +48,8 @@ pub(crate) struct SurfaceProblem<'a> {
     pub signals: Signals,
     /// Where the map comes from at which the descent begins.
     pub start: Start,
+    /// Whether the surfaces are coarse meshes of others, for which another descent follows.
+    pub is_coarse: bool,
     /// The energy of each face.
     pub face_energy: FaceEnergy,
 }

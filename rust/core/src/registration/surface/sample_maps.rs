@@ -80,6 +80,7 @@ impl Sample {
             pulls: Vec::new(),
             signals: Signals::default(),
             start: Start::Domain,
+            is_coarse: false,
             face_energy: FaceEnergy { area_weight: 1.0, angle_weight: 1.0 },
         }
     }

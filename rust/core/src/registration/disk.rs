@@ -5,15 +5,17 @@
 //! target's. The paper holds the boundary of h at the best rotation; here it slides along the circle, which preserves
 //! the areas of the faces next to it too. At last it is laid onto the boundary of g's image, which is a polygon.
 
-use super::between::Between;
+use super::between::{Between, Lowered};
 use super::boundary::{OnRim, Onto};
 use super::correspondence::{Correspondence, Registered, meshes};
+use super::extremities::with_extremities;
+use super::features::Signals;
 use super::filling::Filling;
 use super::landmark_descent::Carrying;
 use super::landmarks::{Landmarks, best_turn, fewest};
-use super::options::{Energy, RegistrationOptions};
+use super::options::{Energy, RegistrationOptions, SHARE_OF_DOMAIN};
 use super::result::{CarryingOptions, DiskRegistration, Registration};
-use super::surface::Start;
+use super::surface::{ISOMETRY, Start};
 use super::verdict::{MISSED, located, missed, verdict};
 use crate::arrays::{from_rows, rows, vectors};
 use crate::codomain::CanonicalDomain;
@@ -22,7 +24,7 @@ use crate::control::{History, Observer, Phase, Status};
 use crate::disk::{DiskMap, DiskMapOptions, map_disk};
 use crate::distortion::{Image, folded_in_plane, measure};
 use crate::error::{Error, Side};
-use crate::location::Locator;
+use crate::location::{Location, Locator};
 use crate::mesh::{Surface, TriangleMesh};
 use crate::vector::Vector3;
 
@@ -70,47 +72,20 @@ pub fn register_disks(
     landmarks.check(source, target, fewest(CanonicalDomain::Disk))?;
     options.check(landmarks.source.len())?;
     let signals = options.signals([source, target])?;
-    let mut in_domain = Phase { whole: observer, from: 0.0, to: options.share_of_domain() };
-    // 2. Both surfaces to the disk
-    let alone = DiskMapOptions { angle_weight: options.angle_weight_in_domain(), ..Default::default() };
-    let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
-        map_disk(mesh, &alone, observer).map_err(|error| error.of_surface(side))
+    // 2. Both over each other in the disk, and with the energy between them the descent
+    let pair = Pair {
+        meshes: [source, target],
+        target_points: &vectors(target_surface.vertices()),
+        landmarks,
+        signals: &signals,
+        options,
     };
-    let f = map(source, Side::Source, &mut Phase { whole: &mut in_domain, from: 0.0, to: 0.3 })?;
-    let g = map(target, Side::Target, &mut Phase { whole: &mut in_domain, from: 0.3, to: 0.6 })?;
-    // 3. The best rotation of the landmarks
-    let places = picked(&g, landmarks.target);
-    let turned = turned(source, &f, best_turn(&picked(&f, landmarks.source), &places));
-    // 4. h: the source's landmarks carried to the target's; if some are missed, the target's to the source's
-    let images = [turned, lifted(rows(g.uv.view()))];
-    let mut met = meet([source, target], images, landmarks, options, &mut history, &mut in_domain)?;
-    // 5. The source's boundary onto the target's, which is a polygon
-    let on_rim = met.onto_target([source, target], landmarks, options, &mut history, &mut in_domain)?;
-    // 6. g⁻¹: the locations on the target
-    let mut phase = Phase { whole: &mut in_domain, from: 0.95, to: 1.0 };
-    let locator = Locator::new(&met.target, target.faces());
-    let (mut locations, mut status) = located(&locator, &met.source, met.status, &mut phase)?;
-    on_rim.set(&mut locations);
-    // 7. The descent between the surfaces
-    if options.energy == Energy::Surface && status != Status::Cancelled {
-        let mut phase = Phase { whole: observer, from: options.share_of_domain(), to: 1.0 };
-        let target_points = vectors(target_surface.vertices());
-        let between = Between {
-            source,
-            target,
-            target_points: &target_points,
-            domain: CanonicalDomain::Disk,
-            target_in_domain: &met.target,
-            landmarks,
-            signals,
-            options,
-            start: Start::Domain,
-            is_coarse: false,
-        };
-        let lowered = between.lower(locations, &mut history, &mut phase);
-        (locations, met.source, status) = (lowered.locations, lowered.registered, lowered.status);
-    }
-    // 8. Figures
+    let laid = match options.energy {
+        Energy::Area => pair.laid(landmarks, &mut history, observer)?,
+        Energy::Surface => pair.descended(&mut history, observer)?,
+    };
+    let Laid { maps: [f, g], met, on_rim, locations, status, .. } = laid;
+    // 3. Figures
     let error = |(&p, &q): (&usize, &usize)| met.source[p].distance(met.target[q]);
     let landmark_error: Vec<f64> = landmarks.source.iter().zip(landmarks.target).map(error).collect();
     let missed = missed(landmarks, options, &landmark_error, target, &locations);
@@ -149,42 +124,162 @@ pub fn register_disks(
     })
 }
 
-/// Carries the source's landmarks to the target's; if some are missed also the target's to the source's, if that is
-/// nearer.
-fn meet(
-    [source, target]: [&TriangleMesh; 2],
-    [source_image, target_image]: [Vec<Vector3>; 2],
-    landmarks: &Landmarks<'_>,
-    options: &RegistrationOptions<'_>,
-    history: &mut History,
-    observer: &mut dyn Observer,
-) -> Result<Meeting, Error> {
-    let of = |image: &[Vector3], vertices: &[usize]| -> Vec<Vector3> {
-        vertices.iter().map(|&vertex| image[vertex]).collect()
-    };
-    let (ours, theirs) = (of(&source_image, landmarks.source), of(&target_image, landmarks.target));
-    let disk = |mesh, landmarks, places| Carrying {
-        mesh,
-        domain: CanonicalDomain::Disk,
-        holds_boundary: false,
-        landmarks,
-        places,
-        weight: options.weight,
-        angle_weight: options.angle_weight_in_domain(),
-    };
-    let there = disk(source, landmarks.source, &theirs);
-    let mut phase = Phase { whole: observer, from: 0.6, to: 0.85 };
-    let (carried, status) = there.carry(source_image.clone(), history, &mut phase)?;
-    let there =
-        Meeting { gap: there.farthest(&carried), source: carried, target: target_image.clone(), status };
-    if there.gap <= MISSED || status == Status::Cancelled {
-        return Ok(there);
+/// Two disks to lay over each other.
+struct Pair<'a, 'f> {
+    meshes: [&'a TriangleMesh; 2],
+    /// The target's vertices as given.
+    target_points: &'a [Vector3],
+    landmarks: &'a Landmarks<'a>,
+    signals: &'a Signals,
+    options: &'a RegistrationOptions<'f>,
+}
+
+/// Two disks over each other.
+struct Laid {
+    /// f and g.
+    maps: [DiskMap; 2],
+    met: Meeting,
+    on_rim: OnRim,
+    /// The locations of the source on the target.
+    locations: Vec<Location>,
+    /// The energy between the surfaces; infinite before the descent.
+    energy: f64,
+    status: Status,
+}
+
+impl Pair<'_, '_> {
+    /// Lays the disks over each other so that the energy between them is low: from a start with the extremities that
+    /// they have in common, if there are some, and one without.
+    fn descended(&self, history: &mut History, observer: &mut dyn Observer) -> Result<Laid, Error> {
+        let with_extremities = with_extremities(self.meshes, self.landmarks);
+        let mut starts = vec![*self.landmarks];
+        if let Some([source, target]) = &with_extremities {
+            starts.insert(0, Landmarks { source, target });
+        }
+        let mut best: Option<Laid> = None;
+        for (k, landmarks) in starts.iter().enumerate() {
+            let share = |k: usize| k as f64 / starts.len() as f64;
+            let mut phase = Phase { whole: observer, from: share(k), to: share(k + 1) };
+            let mut in_domain = Phase { whole: &mut phase, from: 0.0, to: SHARE_OF_DOMAIN };
+            let laid = match self.laid(landmarks, history, &mut in_domain) {
+                Err(Error::CancelledEarly) if best.is_some() => break,
+                laid => laid?,
+            };
+            let mut phase = Phase { whole: &mut phase, from: SHARE_OF_DOMAIN, to: 1.0 };
+            let laid = self.lowered(laid, history, &mut phase);
+            let is_last = laid.status == Status::Cancelled || laid.energy < 1.0 + ISOMETRY;
+            let order = |laid: &Laid| (self.n_apart(laid), laid.energy);
+            if best.as_ref().is_none_or(|best| order(&laid) < order(best)) {
+                best = Some(laid);
+            }
+            if is_last {
+                break;
+            }
+        }
+        Ok(best.expect("there is a start"))
     }
-    let back = disk(target, landmarks.target, &ours);
-    let mut phase = Phase { whole: observer, from: 0.85, to: 0.9 };
-    let (carried, status) = back.carry(target_image, history, &mut phase)?;
-    let back = Meeting { gap: back.farthest(&carried), source: source_image, target: carried, status };
-    Ok(if back.gap < there.gap { back } else { there })
+
+    /// Lays the disks over each other by their maps.
+    fn laid(
+        &self,
+        landmarks: &Landmarks<'_>,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<Laid, Error> {
+        let &Self { meshes: [source, target], options, .. } = self;
+        // 1. Both surfaces to the disk
+        let alone = DiskMapOptions { angle_weight: options.angle_weight_in_domain(), ..Default::default() };
+        let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
+            map_disk(mesh, &alone, observer).map_err(|error| error.of_surface(side))
+        };
+        let f = map(source, Side::Source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
+        let g = map(target, Side::Target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
+        // 2. The best rotation of the landmarks
+        let places = picked(&g, landmarks.target);
+        let turned = turned(source, &f, best_turn(&picked(&f, landmarks.source), &places));
+        // 3. h: the source's landmarks carried to the target's; if some are missed, the target's to the source's
+        let images = [turned, lifted(rows(g.uv.view()))];
+        let mut met = self.meet(images, landmarks, history, observer)?;
+        // 4. The source's boundary onto the target's, which is a polygon
+        let on_rim = met.onto_target([source, target], landmarks, options, history, observer)?;
+        // 5. g⁻¹: the locations on the target
+        let mut phase = Phase { whole: observer, from: 0.95, to: 1.0 };
+        let locator = Locator::new(&met.target, target.faces());
+        let (mut locations, status) = located(&locator, &met.source, met.status, &mut phase)?;
+        on_rim.set(&mut locations);
+        Ok(Laid { maps: [f, g], met, on_rim, locations, energy: f64::INFINITY, status })
+    }
+
+    /// Carries the source's landmarks to the target's; if some are missed also the target's to the source's, if that is
+    /// nearer.
+    fn meet(
+        &self,
+        [source_image, target_image]: [Vec<Vector3>; 2],
+        landmarks: &Landmarks<'_>,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<Meeting, Error> {
+        let &Self { meshes: [source, target], options, .. } = self;
+        let of = |image: &[Vector3], vertices: &[usize]| -> Vec<Vector3> {
+            vertices.iter().map(|&vertex| image[vertex]).collect()
+        };
+        let (ours, theirs) = (of(&source_image, landmarks.source), of(&target_image, landmarks.target));
+        let disk = |mesh, landmarks, places| Carrying {
+            mesh,
+            domain: CanonicalDomain::Disk,
+            holds_boundary: false,
+            landmarks,
+            places,
+            weight: options.weight,
+            angle_weight: options.angle_weight_in_domain(),
+        };
+        let there = disk(source, landmarks.source, &theirs);
+        let mut phase = Phase { whole: observer, from: 0.6, to: 0.85 };
+        let (carried, status) = there.carry(source_image.clone(), history, &mut phase)?;
+        let there =
+            Meeting { gap: there.farthest(&carried), source: carried, target: target_image.clone(), status };
+        if there.gap <= MISSED || status == Status::Cancelled {
+            return Ok(there);
+        }
+        let back = disk(target, landmarks.target, &ours);
+        let mut phase = Phase { whole: observer, from: 0.85, to: 0.9 };
+        let (carried, status) = back.carry(target_image, history, &mut phase)?;
+        let back = Meeting { gap: back.farthest(&carried), source: source_image, target: carried, status };
+        Ok(if back.gap < there.gap { back } else { there })
+    }
+
+    /// After the descent between the surfaces.
+    fn lowered(&self, laid: Laid, history: &mut History, observer: &mut dyn Observer) -> Laid {
+        if laid.status == Status::Cancelled {
+            return laid;
+        }
+        let Laid { maps, mut met, on_rim, locations, .. } = laid;
+        let between = Between {
+            source: self.meshes[0],
+            target: self.meshes[1],
+            target_points: self.target_points,
+            domain: CanonicalDomain::Disk,
+            target_in_domain: &met.target,
+            landmarks: self.landmarks,
+            signals: self.signals.clone(),
+            options: self.options,
+            start: Start::Domain,
+            is_coarse: false,
+        };
+        let Lowered { locations, registered, energy, status } = between.lower(locations, history, observer);
+        met.source = registered;
+        Laid { maps, met, on_rim, locations, energy, status }
+    }
+
+    /// The number of exact pairs of landmarks that do not meet.
+    fn n_apart(&self, laid: &Laid) -> usize {
+        let [ours, theirs] = [&laid.met.source, &laid.met.target];
+        let pairs = self.landmarks.source.iter().zip(self.landmarks.target).enumerate();
+        let is_apart = |&(pair, (&p, &q)): &(usize, (&usize, &usize))| {
+            self.options.pair_weight(pair).is_infinite() && ours[p].distance(theirs[q]) > MISSED
+        };
+        pairs.filter(is_apart).count()
+    }
 }
 
 /// Both surfaces in the disk with their landmarks together, up to a gap.

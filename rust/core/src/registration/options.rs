@@ -147,14 +147,6 @@ impl RegistrationOptions<'_> {
         }
     }
 
-    /// The share of the maps to the domain in the progress of a run.
-    pub(super) fn share_of_domain(&self) -> f64 {
-        match self.energy {
-            Energy::Area => 1.0,
-            Energy::Surface => SHARE_OF_DOMAIN,
-        }
-    }
-
     /// The energy of a face between the surfaces.
     pub(super) fn face_energy(&self) -> FaceEnergy {
         FaceEnergy { area_weight: self.area_weight, angle_weight: self.angle_weight.unwrap_or(1.0) }

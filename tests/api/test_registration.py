@@ -20,7 +20,7 @@ ATTRIBUTES = {
     *("source_map", "target_map", "landmark_error", "missed", "status", "distortion", "area_ratio"),
     *("area_distortion", "target_distortion", "iterations", "seconds", "pull", "inverse", "compare"),
     *("certificates", "warnings", "energies", "strain", "follow", "local_similarities"),
-    *("off_boundary", "in_holes"),
+    *("off_boundary", "in_holes", "source_repaired", "target_repaired"),
 }
 STATUSES = {"converged", "landmarks_missed", "max_iterations", "stalled", "cancelled"}
 

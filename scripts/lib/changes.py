@@ -68,6 +68,7 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     (".github/*", {"workflows": (), "python": PROJECT}),
     ("scripts/requirements/workflows.txt", _whole("workflows")),
     ("scripts/requirements/release.txt", {}),
+    ("scripts/requirements/build.txt", {}),
     ("scripts/requirements/docstrings.txt", _whole("docstrings")),
     ("scripts/requirements/surfaces.txt", _whole("python")),
     ("scripts/requirements/docs.txt", _whole("docs")),

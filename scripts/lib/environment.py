@@ -46,6 +46,11 @@ def dev() -> Environment:
     return _ensure("dev", "dev", *pythons.find(*_newest_supported()))
 
 
+def build() -> Environment:
+    """The environment that builds the sdist and the wheels of a release."""
+    return _ensure("build", "build", *pythons.find(*_newest_supported()))
+
+
 def docs() -> Environment:
     """The environment that builds the documentation."""
     return _ensure("docs", "docs", *pythons.find(*_newest_supported()))
@@ -96,7 +101,7 @@ def add(environment: Environment, requirements: str, *options: str) -> None:
     """Installs a further requirements file into an environment, once; `options` are for pip."""
     path = REQUIREMENTS / f"{requirements}.txt"
     stamp = environment.folder / f"{requirements}.stamp"
-    wanted = content_hash([path])
+    wanted = content_hash(_with_constraints(path))
     if _read(stamp) != wanted:
         run([environment.python, "-m", "pip", "install", "--quiet", *options, "-r", path])
         stamp.write_text(wanted)
@@ -120,7 +125,7 @@ def _ensure_blender(name: str, requirements: str, python: Path, version: str) ->
 def _ensure(name: str, requirements: str, python: Path, version: str) -> Environment:
     environment = Environment(name, VENVS / name, requirements)
     stamp = environment.folder / "installed.stamp"
-    wanted = content_hash([REQUIREMENTS / f"{requirements}.txt"], version, _SCHEME)
+    wanted = content_hash(_with_constraints(REQUIREMENTS / f"{requirements}.txt"), version, _SCHEME)
     with _lock(name):
         if _read(stamp) != wanted or not environment.python.exists():
             _create(environment, python, version)
@@ -142,6 +147,12 @@ def _create(environment: Environment, python: Path, version: str) -> None:
             f"the packages of {path.name} could not be installed:\n{tail(failure.output, 5)}"
         ) from failure
     say(f"  done in {time.monotonic() - began:.0f} s")
+
+
+def _with_constraints(path: Path) -> list[Path]:
+    """A requirements file, and the one whose versions it takes over."""
+    takes_over = "\n-c dev.txt\n" in path.read_text(encoding="utf-8")
+    return [path, REQUIREMENTS / "dev.txt"] if takes_over else [path]
 
 
 def _read(path: Path) -> str:

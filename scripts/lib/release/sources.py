@@ -22,7 +22,7 @@ def build(log: Path | None = None) -> Path:
     copy = places.WORK / "sources"
     _copy_sources(copy)
     places.FILES.mkdir(parents=True, exist_ok=True)
-    maturin = [environment.dev().python, "-m", "maturin", "sdist", "--manifest-path"]
+    maturin = [environment.build().python, "-m", "maturin", "sdist", "--manifest-path"]
     variables = {"SOURCE_DATE_EPOCH": changelog.source_date_epoch()}
     run([*maturin, copy / "rust/python/Cargo.toml", "--out", places.FILES], variables, log)
     return places.sdist()

@@ -40,24 +40,24 @@ def digest(path: Path) -> str:
 
 
 def _build(platform: Platform, free_threaded: bool, folder: Path, log: Path | None) -> Path:
-    dev = environment.dev()
+    tools = environment.build()
     if platform.needs_zig:
-        environment.add(dev, "portable")
+        environment.add(tools, "portable")
     source = sources.unpack(places.WORK / "build")
-    python = pythons.find(FREE_THREADED)[0] if free_threaded else dev.python
-    command = [dev.python, "-m", "maturin", "build", "--profile", "dist", "--locked", "--interpreter", python]
-    command += ["--compression-level", "9"]
+    python = pythons.find(FREE_THREADED)[0] if free_threaded else tools.python
+    command = [tools.python, "-m", "maturin", "build", "--profile", "dist", "--locked"]
+    command += ["--interpreter", python, "--compression-level", "9"]
     command += ["--manifest-path", source / "rust/python/Cargo.toml", "--out", places.WORK / "new"]
     shutil.rmtree(places.WORK / "new", ignore_errors=True)
     run(["cargo", "fetch", "--locked", "--manifest-path", source / "Cargo.toml"], log=log)
-    run([*command, *platform.options], {**_variables(dev, source), **platform.variables}, log)
+    run([*command, *platform.options], {**_variables(tools, source), **platform.variables}, log)
     shutil.rmtree(source.parent)  # half a gigabyte of objects
     [wheel] = (places.WORK / "new").glob("*.whl")
     folder.mkdir(parents=True, exist_ok=True)
     return Path(shutil.move(str(wheel), str(folder / wheel.name)))
 
 
-def _variables(dev: environment.Environment, source: Path) -> dict[str, str]:
+def _variables(tools: environment.Environment, source: Path) -> dict[str, str]:
     """The environment of a build: no git, no clock, and no path of this machine in what is built."""
     renamed = _renamed_paths(source)
     c_flags = " ".join(f"-ffile-prefix-map={path}={name}" for path, name in renamed)
@@ -65,9 +65,9 @@ def _variables(dev: environment.Environment, source: Path) -> dict[str, str]:
     is_windows = os.name == "nt"
     if is_windows:
         flags.append("-Clink-arg=/Brepro")  # a hash in the place of the time
-    path = [str(dev.python.parent), os.environ.get("PATH", "")]
+    path = [str(tools.python.parent), os.environ.get("PATH", "")]
     return {
-        "VIRTUAL_ENV": str(dev.folder),
+        "VIRTUAL_ENV": str(tools.folder),
         # maturin finds zig through the `python3` that is first on PATH.
         "PATH": os.pathsep.join(path if is_windows else [str(_without_git()), *path]),
         "SOURCE_DATE_EPOCH": changelog.source_date_epoch(),

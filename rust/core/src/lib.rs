@@ -114,7 +114,7 @@
 //!
 //! - `metis`: orders the unknowns of large systems (from about 200,000 vertices) by nested dissection with METIS, which
 //!   makes their factorizations faster. METIS is C code under the Apache license that is compiled along: this needs a C
-//!   compiler.
+//!   compiler. On Windows the feature changes nothing.
 
 mod alignment;
 mod arrays;

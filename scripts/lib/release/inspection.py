@@ -15,6 +15,7 @@ from shell import ROOT, run, version
 
 _LICENSES = ("LICENSE-MIT", "LICENSE-APACHE", notices.NAME)
 # Messages of getopt.c and gkregex.c, the LGPL files among the C sources of METIS, which nothing here calls.
+# Linkers of Linux and macOS leave them out; wheels for Windows are built without METIS.
 _LGPL = (b"Premature end of regular expression", b"option `%s' is ambiguous")
 # A folder of somebody's machine in messages of panics: of a user, of a runner, of a temporary build.
 _FOREIGN_PATH = re.compile(rb"(?:/root|/home|/Users|/tmp|/work|[A-Z]:\\(?:Users|a))[/\\][\w./\\-]+")

@@ -11,7 +11,7 @@
 //! surface: about n log n numbers and n^1.5 multiplications.
 
 pub(super) mod dense;
-#[cfg(feature = "metis")]
+#[cfg(all(feature = "metis", not(windows)))]
 mod dissection;
 mod elimination;
 mod fronts;
@@ -129,12 +129,12 @@ impl Symbolic {
 }
 
 /// From this number of nodes on, nested dissection pays for itself within a few factorizations.
-#[cfg(feature = "metis")]
+#[cfg(all(feature = "metis", not(windows)))]
 const LARGE: usize = 200_000;
 
 /// An order of the nodes that keeps the factor sparse.
 fn fill_reducing_order(graph: &Graph) -> Result<Vec<u32>, Error> {
-    #[cfg(feature = "metis")]
+    #[cfg(all(feature = "metis", not(windows)))]
     if graph.n_nodes() >= LARGE
         && let Some(order) = dissection::nested_dissection(graph)?
     {

@@ -129,6 +129,8 @@ mod filling;
 mod hyperbolic;
 mod layout;
 mod location;
+#[doc(hidden)]
+pub mod memory;
 mod mesh;
 mod optimize;
 mod options;

@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use crate::arrays::{Reals, from_array, frozen};
 use crate::errors::bad_option;
 use crate::indices::{from_index_list, from_indices};
+use crate::memory;
 use crate::options::{choice, metrics};
 use crate::provenance::{Call, fingerprint, options};
 use crate::registration::vertex_paths;
@@ -344,6 +345,7 @@ pub fn hyperbolic_structure(
     let kept = options!(py; curves, metric)?;
     let metric = choice("metric", metric, &metrics())?;
     let given = Given::new(vertices, faces)?;
+    memory::check(py, memory::STRUCTURE, given.n_vertices())?;
     let curves = vertex_paths(curves, "curves", given.n_vertices())?;
     let (structure, input) = run(py, progress, move |observer| {
         let surface = given.surface()?;

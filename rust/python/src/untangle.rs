@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use crate::arrays::{self, Reals, from_array};
 use crate::distortion::Distortion;
 use crate::indices::{from_index_list, vertex_set};
+use crate::memory;
 use crate::provenance::{Call, fingerprint, options};
 use crate::result::{ResultBase, made, restorable};
 use crate::run::run;
@@ -114,6 +115,7 @@ pub fn untangle(
     let began = Instant::now();
     let kept = options!(py; image, fixed, tolerance)?;
     let given = Given::pair(surface, ["surface", "surface vertices", "surface faces"])?;
+    memory::check(py, memory::UNTANGLING, given.n_vertices())?;
     let image = arrays::image(image)?;
     let fixed = fixed.map_or(Ok(Vec::new()), |fixed| vertex_set(fixed, "fixed", given.n_vertices()))?;
     // 2. The run

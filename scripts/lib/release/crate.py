@@ -8,7 +8,7 @@ from pathlib import Path
 from release.problems import refuse_any
 from shell import run
 
-_NEEDED = ("Cargo.toml", "README.md", "src/lib.rs")
+_NEEDED = ("Cargo.toml", "README.md", "LICENSE-MIT", "LICENSE-APACHE", "src/lib.rs")
 
 
 def check(log: Path | None = None) -> None:

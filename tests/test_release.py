@@ -16,7 +16,7 @@ import distribution
 import pythons
 import shell
 from release import agreement, extensions, inspection, notices, places, platforms
-from release.main import STEPS
+from release.main import STEPS, _verdict
 from shell import ROOT, Unavailable
 
 WORKFLOWS = {
@@ -100,6 +100,39 @@ def test_all_that_is_built_bears_the_day_of_the_release(project):
     assert changelog.source_date_epoch() == str(1_000_000_000 - 1_000_000_000 % 86400)
     replace(project / "CHANGELOG.md", "2001-09-09", "unreleased")
     assert int(changelog.source_date_epoch()) > 315_532_800  # zip files begin in 1980
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "alone", "rehearsed"),
+    [
+        (("ok",), 0, 0),
+        (("not done",), 1, 0),
+        (("FAILED",), 1, 1),
+        (("ok", "not done"), 1, 0),
+        (("not done", "FAILED"), 1, 1),
+        (("FAILED", "ok"), 1, 1),
+    ],
+)
+def test_what_was_not_done_fails_but_in_a_rehearsal(outcomes, alone, rehearsed):
+    named = dict(zip(("sdist", "wheel"), outcomes, strict=False))
+    assert (_verdict(named, False), _verdict(named, True)) == (alone, rehearsed)
+
+
+@pytest.mark.parametrize(
+    ("policy", "tag", "is_kept"),
+    [
+        ("manylinux_2_28_x86_64", "manylinux_2_28_x86_64", True),
+        ("manylinux_2_5_x86_64", "manylinux_2_28_x86_64", True),
+        ("manylinux_2_34_x86_64", "manylinux_2_28_x86_64", False),
+        ("manylinux_2_17_aarch64", "manylinux_2_17_aarch64.manylinux2014_aarch64", True),
+        ("manylinux_2_28_aarch64", "manylinux_2_28_x86_64", False),
+        ("musllinux_1_1_x86_64", "musllinux_1_2_x86_64", True),
+        ("manylinux_1_1_x86_64", "musllinux_1_2_x86_64", False),
+        ("linux_x86_64", "manylinux_2_28_x86_64", False),
+    ],
+)
+def test_a_wheel_needs_no_newer_system_than_its_name_says(policy, tag, is_kept):
+    assert inspection.is_promised(policy, f"authalic-1.2.3-cp311-abi3-{tag}.whl") == is_kept
 
 
 @pytest.mark.parametrize(
@@ -326,6 +359,10 @@ def test_only_a_tag_that_agrees_is_published():
         step.get("run") for step in jobs["agree"]["steps"] if step.get("if") == "github.ref_type == 'tag'"
     ]
     assert commands == ['python scripts/release agree --tag "$GITHUB_REF_NAME"']
+
+
+def test_checks_and_releases_have_one_compiler():
+    assert len({flow["env"]["RUSTUP_TOOLCHAIN"] for flow in WORKFLOWS.values()}) == 1
 
 
 def test_other_workflows_write_nothing():

@@ -79,8 +79,8 @@ def check_pythons(only: Sequence[str], wheel: Path, folder: Path, is_brief: bool
             if age == "newest" or name not in _ONLY_NEWEST:
                 log = folder / f"python-{name}-{requirements}.log"
                 what = f"Python {name}, {age} numpy"
-                tests = "some tests" if is_brief or name == PYTHONS[-1] else "all tests"
-                places = _few() if tests == "some tests" else ("tests/api",)
+                is_few = is_brief or name == PYTHONS[-1]
+                tests, places = ("the tests of --brief", _few()) if is_few else ("all tests", ("tests/api",))
                 rows.append(_row(what, tests, _package, name, requirements, wheel, places, log))
     return rows
 

@@ -18,6 +18,7 @@ from shell import ROOT, run, version
 
 LIMIT = 4_000_000
 """Bytes of a zip, at most."""
+_RECOMPRESSED = "recompressed"
 _NEEDED = ("__init__.py", "LICENSE", "blender_manifest.toml", "manual.html", distribution.THIRD_PARTY)
 
 
@@ -42,7 +43,7 @@ def pack(log: Path | None = None) -> list[Path]:
 
 def recompressed(archive: Path, name: str, log: Path | None = None) -> Path:
     """A smaller archive of the same files, in a folder of its own; one that is there already is kept."""
-    folder = places.WORK / "recompressed" / hashlib.sha256(archive.read_bytes()).hexdigest()[:16]
+    folder = places.WORK / _RECOMPRESSED / hashlib.sha256(archive.read_bytes()).hexdigest()[:16]
     if not (folder / name).exists():
         folder.mkdir(parents=True, exist_ok=True)
         program = ROOT / "scripts/lib/release/recompress.py"
@@ -52,7 +53,8 @@ def recompressed(archive: Path, name: str, log: Path | None = None) -> Path:
 
 
 def pack_again(log: Path | None = None) -> None:
-    """Packs the zips a second time and compares the bytes."""
+    """Packs the zips a second time, from nothing, and compares the bytes."""
+    shutil.rmtree(places.WORK / _RECOMPRESSED, ignore_errors=True)
     first = {path.name: path.read_bytes() for path in places.zips()}
     second = {path.name: path.read_bytes() for path in pack(log)}
     refuse_any([f"two builds of {name} differ" for name in first if second.get(name) != first[name]])

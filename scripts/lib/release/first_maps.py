@@ -2,6 +2,7 @@
 """Maps a few surfaces with whatever `authalic` is installed, and checks the maps by formulas of its own."""
 
 import sys
+import sysconfig
 
 import numpy as np
 
@@ -33,6 +34,9 @@ def areas(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 
 def main() -> None:
+    if sysconfig.get_config_var("Py_GIL_DISABLED"):
+        assert not sys._is_gil_enabled(), "a module has switched the global lock on"
+
     vertices, faces = octahedron(3)
     egg = vertices * [1, 1, 1.5]
     sphere = authalic.sphere_map(egg, faces)

@@ -60,9 +60,18 @@ def _audit(wheel: Path, tools: environment.Environment, log: Path | None) -> Non
     if "linux" in wheel.name:
         shown = run([tools.python, "-m", "auditwheel", "show", wheel], log=log)
         policy = re.search(r'consistent with\s+the\s+following\s+platform\s+tag:\s+"(\w+)"', shown)
-        if policy is None or policy[1] not in wheel.name:
+        if policy is None or not is_promised(policy[1], wheel.name):
             found = policy[1] if policy else "no tag at all"
             raise Refused([f"{wheel.name} is consistent with {found}, as auditwheel says"])
+
+
+def is_promised(policy: str, name: str) -> bool:
+    """Whether a policy, such as manylinux_2_17_x86_64, asks for no newer system than the name of a wheel."""
+    pattern = r"(manylinux|musllinux)_(\d+)_(\d+)_(\w+)"
+    found, named = re.fullmatch(pattern, policy), re.search(pattern, name)
+    if found is None or named is None or (found[1], found[4]) != (named[1], named[4]):
+        return False
+    return (int(found[2]), int(found[3])) <= (int(named[2]), int(named[3]))
 
 
 def _validate_sbom(wheel: Path, tools: environment.Environment, log: Path | None) -> None:

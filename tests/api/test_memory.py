@@ -46,6 +46,9 @@ calls = {
     "hyperbolic_structure": lambda _: authalic.hyperbolic_structure(ball, curves=curves),
     "repair": lambda _: authalic.repair(huge),
     "untangle": lambda _: authalic.untangle(huge, flat),
+    "register_disks, one large": lambda surface: authalic.register_disks(
+        small, surface, source_landmarks=[400], target_landmarks=[50_000]
+    ),
 }
 for name, call in calls.items():
     try:
@@ -65,6 +68,7 @@ def test_a_run_without_memory_is_refused_and_python_lives_on(run_python):
         **dict.fromkeys(("register_spheres", "register_hyperbolic"), 320_002),
         "hyperbolic_structure": 160_001,
         **dict.fromkeys(("repair", "untangle"), 640_000),
+        "register_disks, one large": 160_000,
     }
     lines = run_python(LIMITED).splitlines()
     assert lines == [*(f"{name} out_of_memory 0 {n}" for name, n in n_vertices.items()), "still alive"]

@@ -255,6 +255,20 @@ fn maps_of_any_surface_are_even_hardly_sheared_and_one_to_one() {
 }
 
 #[test]
+fn an_unwrap_along_previewed_seams_has_maps_without_folds() {
+    for test in [bumpy(4), torus(24, 12)] {
+        let options = SeamOptions { method: SeamMethod::Cones, ..Default::default() };
+        let seams = found(&test, &options);
+        let unwrap = unwrapped(&test, options);
+        assert_eq!(edges_of(&unwrap.edges), edges_of(&seams.edges), "{}", test.name);
+        let uv = rows::<2, f64>(unwrap.uv.view());
+        for face in rows::<3, u32>(unwrap.faces.view()) {
+            assert!(signed_area(&face.map(|corner| uv[corner as usize])) > 0.0, "{}", test.name);
+        }
+    }
+}
+
+#[test]
 fn seams_and_unwraps_agree() {
     for test in [bumpy(4), torus(24, 12), two_pieces()] {
         let (seams, map) = (found(&test, &for_target(1.3)), unwrapped(&test, for_target(1.3)));

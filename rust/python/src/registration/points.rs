@@ -142,6 +142,7 @@ pub fn register_disks(
         [weights, features, feature_weight],
         options,
     )?;
+    arguments.require_memory_for_maps(py)?;
     let repair = repair.then(|| RepairOptions::for_a_map(true));
     let outcome = run_with_preview(py, progress, preview, move |observer| {
         arguments.register(repair, (authalic::register_disks, Finished::Disk), observer)
@@ -274,6 +275,9 @@ pub fn register_spheres(
         [weights, features, feature_weight],
         options,
     )?;
+    if arguments.options.energy == Energy::Area {
+        arguments.require_memory_for_maps(py)?;
+    }
     let repair = repair.then(|| RepairOptions::for_a_map(false));
     let outcome = run_with_preview(py, progress, preview, move |observer| {
         arguments.register(repair, (authalic::register_spheres, Finished::Sphere), observer)
@@ -297,6 +301,11 @@ struct Arguments {
 }
 
 impl Arguments {
+    /// Refuses surfaces for whose maps, one after the other, there is no memory.
+    fn require_memory_for_maps(&self, py: Python<'_>) -> PyResult<()> {
+        memory::check(py, memory::MAP, self.source.n_vertices().max(self.target.n_vertices()))
+    }
+
     fn new(
         [source, target]: [&Bound<'_, PyAny>; 2],
         [source_landmarks, target_landmarks]: [Option<&Bound<'_, PyAny>>; 2],

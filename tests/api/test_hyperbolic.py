@@ -39,6 +39,7 @@ def test_all_but_the_surfaces_is_keyword_only():
         "feature_weight": None,
         "position_weight": 0.0,
         "fill_holes": False,
+        "repair": False,
         "metric": "newton",
         "solver": "newton",
         "max_iterations": None,

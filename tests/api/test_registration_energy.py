@@ -209,6 +209,9 @@ def test_curves_refuse_what_the_harmonic_energy_does_not_weigh():
         with pytest.raises(ValueError, match='"surface"') as caught:
             curves.register(CURVES, **option)
         assert caught.value.kind == "invalid_option"
+    with pytest.raises(ValueError, match="where angle_weight is 0") as caught:
+        curves.register(CURVES, energy="surface", area_weight=0.0, angle_weight=0.0)
+    assert caught.value.kind == "invalid_option"
     with pytest.raises(authalic.MeshError, match="target features") as caught:
         curves.register(CURVES, energy="surface", features=(signals[0], signals[1][1:]))
     assert caught.value.side == "target"

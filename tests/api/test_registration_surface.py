@@ -99,6 +99,17 @@ def test_a_descent_that_is_cancelled_returns_a_map_without_folds(pair):
 
 
 @both
+def test_a_run_cancelled_in_its_second_half_says_so(pair):
+    """Spheres have a map from their first start by then, but the second is cut short."""
+    heard = []
+    register(pair, progress=lambda fraction, _message: heard.append(fraction) or True)
+    later = [fraction for fraction in heard if 0.5 <= fraction < 1]
+    result = register(pair, progress=lambda fraction, _message: fraction < later[0])
+    assert result.status == "cancelled"
+    pairs.assert_embedding(result.registered, result.faces)
+
+
+@both
 def test_previews_come_nearer_to_the_result_and_change_no_bit(pair):
     seen = []
     result = register(pair, preview=seen.append)

@@ -3,6 +3,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -58,7 +59,15 @@ def start(code, folder, **options):
     """Starts Python code in a process of its own, in a folder, with its output in pipes."""
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
-    return subprocess.Popen([sys.executable, "-c", code], cwd=folder, env=environment, **pipes, **options)
+    command = [sys.executable, "-c", code]
+    return subprocess.Popen(
+        command, cwd=folder, env=environment, preexec_fn=None if os.name == "nt" else _hear_interrupts, **pipes, **options
+    )
+
+
+def _hear_interrupts():
+    """What a shell starts in the background ignores Ctrl-C, and so would what that starts."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def names(folder: Path):

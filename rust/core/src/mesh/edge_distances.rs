@@ -43,3 +43,34 @@ pub(crate) fn edge_distances(
     }
     distances
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_those_of_shortest_paths_up_to_the_limit() {
+        // a strip of two rows of squares' corners, 1 apart, with diagonals
+        let points: Vec<Vector3> =
+            (0..10).map(|k| Vector3([f64::from(k / 2), f64::from(k % 2), 0.0])).collect();
+        let faces: Vec<[Vertex; 3]> = (0..4u32)
+            .flat_map(|k| [[2 * k, 2 * k + 2, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 1]])
+            .map(|face| face.map(Vertex))
+            .collect();
+        let corners = VertexCorners::new(points.len(), &faces);
+        let from = |sources: &[u32], most: f64| {
+            edge_distances(&points, &faces, &corners, sources.iter().map(|&v| Vertex(v)), most)
+        };
+        let root = 2f64.sqrt();
+        let along = from(&[0], f64::INFINITY);
+        for k in 0..5 {
+            let k_f = k as f64;
+            assert!((along[2 * k] - k_f).abs() < 1e-12);
+            let above = if k == 0 { 1.0 } else { k_f - 1.0 + root };
+            assert!((along[2 * k + 1] - above).abs() < 1e-12);
+        }
+        let near = from(&[0, 8], 1.0);
+        assert_eq!([near[0], near[2], near[6], near[8]], [0.0, 1.0, 1.0, 0.0]);
+        assert!(near[4].is_infinite() && near[3].is_infinite());
+    }
+}

@@ -28,6 +28,9 @@ use crate::location::{Location, Locator};
 use crate::mesh::{Surface, TriangleMesh};
 use crate::vector::Vector3;
 
+/// Disks with more vertices have one start.
+const LARGE: usize = 30_000;
+
 /// Registers two disks by landmarks inside them.
 ///
 /// # Errors
@@ -149,25 +152,32 @@ struct Laid {
 
 impl Pair<'_, '_> {
     /// Lays the disks over each other so that the energy between them is low: from a start with the extremities that
-    /// they have in common, if there are some, and one without.
+    /// they have in common, if there are some, and one without; large ones without alone.
     fn descended(&self, history: &mut History, observer: &mut dyn Observer) -> Result<Laid, Error> {
-        let with_extremities = with_extremities(self.meshes, self.landmarks);
+        let is_large = self.meshes.iter().any(|mesh| mesh.n_vertices() > LARGE);
+        let with_extremities =
+            if is_large { None } else { with_extremities(self.meshes, self.landmarks, observer)? };
         let mut starts = vec![*self.landmarks];
         if let Some([source, target]) = &with_extremities {
             starts.insert(0, Landmarks { source, target });
         }
         let mut best: Option<Laid> = None;
+        let mut is_cancelled = false;
         for (k, landmarks) in starts.iter().enumerate() {
             let share = |k: usize| k as f64 / starts.len() as f64;
             let mut phase = Phase { whole: observer, from: share(k), to: share(k + 1) };
             let mut in_domain = Phase { whole: &mut phase, from: 0.0, to: SHARE_OF_DOMAIN };
             let laid = match self.laid(landmarks, history, &mut in_domain) {
-                Err(Error::CancelledEarly) if best.is_some() => break,
+                Err(Error::CancelledEarly) if best.is_some() => {
+                    is_cancelled = true;
+                    break;
+                }
                 laid => laid?,
             };
             let mut phase = Phase { whole: &mut phase, from: SHARE_OF_DOMAIN, to: 1.0 };
             let laid = self.lowered(laid, history, &mut phase);
-            let is_last = laid.status == Status::Cancelled || laid.energy < 1.0 + ISOMETRY;
+            is_cancelled = laid.status == Status::Cancelled;
+            let is_last = is_cancelled || laid.energy < 1.0 + ISOMETRY;
             let order = |laid: &Laid| (self.n_apart(laid), laid.energy);
             if best.as_ref().is_none_or(|best| order(&laid) < order(best)) {
                 best = Some(laid);
@@ -176,7 +186,9 @@ impl Pair<'_, '_> {
                 break;
             }
         }
-        Ok(best.expect("there is a start"))
+        let best = best.expect("there is a start");
+        // the map of an earlier start is kept, but the run is cancelled
+        Ok(if is_cancelled { Laid { status: Status::Cancelled, ..best } } else { best })
     }
 
     /// Lays the disks over each other by their maps.

@@ -9,7 +9,7 @@ use crate::options::check_angle_weight;
 
 /// Angle weights of the two maps and of carrying the landmarks from which the descent between the surfaces starts. With
 /// many landmarks the start is the better the less shapes change on the way to the domain, with few ones areas tell more
-/// of where the parts between them go.
+/// of where the parts between them go. The second is for spheres that have no extremities in common.
 pub(super) const START_ANGLE_WEIGHTS: [f64; 2] = [100.0, 10.0];
 
 /// The share of the maps to the domain in the progress of a run whose descent between the surfaces follows.

@@ -18,7 +18,7 @@ use super::landmarks::{Landmarks, fewest};
 use super::options::{Energy, RegistrationOptions, SHARE_OF_DOMAIN, START_ANGLE_WEIGHTS};
 use super::result::{CarryingOptions, Registration, SphereRegistration};
 use super::surface::{ISOMETRY, Start};
-use super::verdict::{located, missed, verdict, worst};
+use super::verdict::{MISSED, located, missed, verdict, worst};
 use crate::alignment::rotation::{best_rotation, rotate};
 use crate::arrays::{from_vectors, vectors};
 use crate::codomain::CanonicalDomain;
@@ -184,20 +184,25 @@ impl Pair<'_, '_> {
             let mut phase = Phase { whole: observer, from: 0.5, to: 1.0 };
             return Ok(self.lowered(laid, Start::Coarse, history, &mut phase));
         }
-        let with_extremities = with_extremities(self.meshes, self.landmarks);
+        let with_extremities = with_extremities(self.meshes, self.landmarks, observer)?;
         let starts = self.starts(with_extremities.as_ref());
         let mut best: Option<Laid> = None;
+        let mut is_cancelled = false;
         for (k, (angle_weight, landmarks)) in starts.iter().enumerate() {
             let share = |k: usize| k as f64 / starts.len() as f64;
             let mut phase = Phase { whole: observer, from: share(k), to: share(k + 1) };
             let mut in_domain = Phase { whole: &mut phase, from: 0.0, to: SHARE_OF_DOMAIN };
             let laid = match self.laid(*angle_weight, landmarks, history, &mut in_domain) {
-                Err(Error::CancelledEarly) if best.is_some() => break,
+                Err(Error::CancelledEarly) if best.is_some() => {
+                    is_cancelled = true;
+                    break;
+                }
                 laid => laid?,
             };
             let mut phase = Phase { whole: &mut phase, from: SHARE_OF_DOMAIN, to: 1.0 };
             let laid = self.lowered(laid, Start::Domain, history, &mut phase);
-            let is_last = laid.status == Status::Cancelled || laid.energy < 1.0 + ISOMETRY;
+            is_cancelled = laid.status == Status::Cancelled;
+            let is_last = is_cancelled || laid.energy < 1.0 + ISOMETRY;
             let order = |laid: &Laid| (self.n_apart(laid), laid.energy);
             if best.as_ref().is_none_or(|best| order(&laid) < order(best)) {
                 best = Some(laid);
@@ -206,7 +211,9 @@ impl Pair<'_, '_> {
                 break;
             }
         }
-        Ok(best.expect("there is a start"))
+        let best = best.expect("there is a start");
+        // the map of an earlier start is kept, but the run is cancelled
+        Ok(if is_cancelled { Laid { status: Status::Cancelled, ..best } } else { best })
     }
 
     /// Lays coarse meshes of the spheres over each other, and takes their maps to the whole; `None` where the spheres are
@@ -280,11 +287,12 @@ impl Pair<'_, '_> {
         Laid { maps: laid.maps, registered: [registered, target_registered], locations, energy, status }
     }
 
-    /// The number of exact pairs of landmarks that do not meet.
+    /// The number of exact pairs of landmarks that do not meet; on coarse meshes they must meet exactly.
     fn n_apart(&self, laid: &Laid) -> usize {
+        let limit = if self.is_coarse { MET } else { MISSED };
         let [ours, theirs] = &laid.registered;
         let is_apart = |(pair, [p, q]): &(usize, [Vector3; 2])| {
-            self.options.pair_weight(*pair).is_infinite() && p.distance(*q) > MET
+            self.options.pair_weight(*pair).is_infinite() && p.distance(*q) > limit
         };
         pairs(self.landmarks, ours, theirs).into_iter().enumerate().filter(is_apart).count()
     }

@@ -48,7 +48,7 @@ fn arrays_that_are_no_mesh_are_refused() {
     let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let refused = |faces: &[[u32; 3]]| repaired(&vertices, faces, &options).unwrap_err();
     assert_eq!(refused(&[]), MeshError::NoFaces.into());
-    assert_eq!(refused(&[[0, 1, 1]]), MeshError::NoFaces.into());
+    assert_eq!(refused(&[[0, 1, 1]]), MeshError::NoFaceLeft.into());
     assert!(matches!(refused(&[[0, 1, 3]]), Error::Mesh(MeshError::IndexOutOfRange { value: 3, .. })));
     let flat = repair(Array2::zeros((3, 2)), ndarray::array![[0, 1, 2]], &options);
     assert!(matches!(flat, Err(Error::InvalidArray { name: "vertices", .. })));

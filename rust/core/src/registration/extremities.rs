@@ -233,15 +233,6 @@ mod tests {
     }
 
     #[test]
-    fn a_cancelled_search_ends() {
-        let body = with_arms([2.0; 4]);
-        let landmarks = Landmarks { source: &BETWEEN, target: &BETWEEN };
-        let mut never = |_: f64, _: &str| false;
-        let ended = with_extremities([&body, &body], &landmarks, &mut never);
-        assert_eq!(ended, Err(Error::CancelledEarly));
-    }
-
-    #[test]
     fn rounding_does_not_choose_between_the_sides_of_a_symmetric_body() {
         let body = with_arms([2.0; 4]);
         let noisy = |seed: usize| {

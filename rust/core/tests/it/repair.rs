@@ -73,7 +73,7 @@ proptest! {
         let result = match repaired(&vertices, &faces, &options) {
             Ok(result) => result,
             Err(error) => {
-                prop_assert_eq!(error, MeshError::NoFaces.into());
+                prop_assert_eq!(error, MeshError::NoFaceLeft.into());
                 return Ok(());
             }
         };

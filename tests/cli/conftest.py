@@ -60,9 +60,9 @@ def start(code, folder, **options):
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
     command = [sys.executable, "-c", code]
-    return subprocess.Popen(
-        command, cwd=folder, env=environment, preexec_fn=None if os.name == "nt" else _hear_interrupts, **pipes, **options
-    )
+    if os.name == "posix":
+        options["preexec_fn"] = _hear_interrupts
+    return subprocess.Popen(command, cwd=folder, env=environment, **pipes, **options)
 
 
 def _hear_interrupts():

@@ -15,7 +15,8 @@ use super::landmark_descent::Carrying;
 use super::landmarks::{Landmarks, best_turn, fewest};
 use super::options::{Energy, RegistrationOptions, SHARE_OF_DOMAIN};
 use super::result::{CarryingOptions, DiskRegistration, Registration};
-use super::surface::{ISOMETRY, Start};
+use super::starts::{Rank, best_of};
+use super::surface::Start;
 use super::verdict::{MISSED, located, missed, verdict};
 use crate::arrays::{from_rows, rows, vectors};
 use crate::codomain::CanonicalDomain;
@@ -161,32 +162,15 @@ impl Pair<'_, '_> {
         if let Some([source, target]) = &with_extremities {
             starts.insert(0, Landmarks { source, target });
         }
-        let mut best: Option<Laid> = None;
-        let mut is_cancelled = false;
-        for (k, landmarks) in starts.iter().enumerate() {
-            let share = |k: usize| k as f64 / starts.len() as f64;
-            let mut phase = Phase { whole: observer, from: share(k), to: share(k + 1) };
-            let mut in_domain = Phase { whole: &mut phase, from: 0.0, to: SHARE_OF_DOMAIN };
-            let laid = match self.laid(landmarks, history, &mut in_domain) {
-                Err(Error::CancelledEarly) if best.is_some() => {
-                    is_cancelled = true;
-                    break;
-                }
-                laid => laid?,
-            };
-            let mut phase = Phase { whole: &mut phase, from: SHARE_OF_DOMAIN, to: 1.0 };
-            let laid = self.lowered(laid, history, &mut phase);
-            is_cancelled = laid.status == Status::Cancelled;
-            let is_last = is_cancelled || laid.energy < 1.0 + ISOMETRY;
-            let order = |laid: &Laid| (self.n_apart(laid), laid.energy);
-            if best.as_ref().is_none_or(|best| order(&laid) < order(best)) {
-                best = Some(laid);
-            }
-            if is_last {
-                break;
-            }
-        }
-        let best = best.expect("there is a start");
+        let lay = |k: usize, observer: &mut dyn Observer| {
+            let mut phase = Phase { whole: observer, from: 0.0, to: SHARE_OF_DOMAIN };
+            let laid = self.laid(&starts[k], history, &mut phase)?;
+            let mut phase = Phase { whole: observer, from: SHARE_OF_DOMAIN, to: 1.0 };
+            Ok(self.lowered(laid, history, &mut phase))
+        };
+        let rank =
+            |laid: &Laid| Rank { n_apart: self.n_apart(laid), energy: laid.energy, status: laid.status };
+        let (best, is_cancelled) = best_of(starts.len(), observer, lay, rank)?;
         // the map of an earlier start is kept, but the run is cancelled
         Ok(if is_cancelled { Laid { status: Status::Cancelled, ..best } } else { best })
     }

@@ -17,7 +17,8 @@ use super::landmark_descent::Carrying;
 use super::landmarks::{Landmarks, fewest};
 use super::options::{Energy, RegistrationOptions, SHARE_OF_DOMAIN, START_ANGLE_WEIGHTS};
 use super::result::{CarryingOptions, Registration, SphereRegistration};
-use super::surface::{ISOMETRY, Start};
+use super::starts::{Rank, best_of};
+use super::surface::Start;
 use super::verdict::{MISSED, located, missed, verdict, worst};
 use crate::alignment::rotation::{best_rotation, rotate};
 use crate::arrays::{from_vectors, vectors};
@@ -186,32 +187,16 @@ impl Pair<'_, '_> {
         }
         let with_extremities = with_extremities(self.meshes, self.landmarks, observer)?;
         let starts = self.starts(with_extremities.as_ref());
-        let mut best: Option<Laid> = None;
-        let mut is_cancelled = false;
-        for (k, (angle_weight, landmarks)) in starts.iter().enumerate() {
-            let share = |k: usize| k as f64 / starts.len() as f64;
-            let mut phase = Phase { whole: observer, from: share(k), to: share(k + 1) };
-            let mut in_domain = Phase { whole: &mut phase, from: 0.0, to: SHARE_OF_DOMAIN };
-            let laid = match self.laid(*angle_weight, landmarks, history, &mut in_domain) {
-                Err(Error::CancelledEarly) if best.is_some() => {
-                    is_cancelled = true;
-                    break;
-                }
-                laid => laid?,
-            };
-            let mut phase = Phase { whole: &mut phase, from: SHARE_OF_DOMAIN, to: 1.0 };
-            let laid = self.lowered(laid, Start::Domain, history, &mut phase);
-            is_cancelled = laid.status == Status::Cancelled;
-            let is_last = is_cancelled || laid.energy < 1.0 + ISOMETRY;
-            let order = |laid: &Laid| (self.n_apart(laid), laid.energy);
-            if best.as_ref().is_none_or(|best| order(&laid) < order(best)) {
-                best = Some(laid);
-            }
-            if is_last {
-                break;
-            }
-        }
-        let best = best.expect("there is a start");
+        let lay = |k: usize, observer: &mut dyn Observer| {
+            let (angle_weight, landmarks) = &starts[k];
+            let mut phase = Phase { whole: observer, from: 0.0, to: SHARE_OF_DOMAIN };
+            let laid = self.laid(*angle_weight, landmarks, history, &mut phase)?;
+            let mut phase = Phase { whole: observer, from: SHARE_OF_DOMAIN, to: 1.0 };
+            Ok(self.lowered(laid, Start::Domain, history, &mut phase))
+        };
+        let rank =
+            |laid: &Laid| Rank { n_apart: self.n_apart(laid), energy: laid.energy, status: laid.status };
+        let (best, is_cancelled) = best_of(starts.len(), observer, lay, rank)?;
         // the map of an earlier start is kept, but the run is cancelled
         Ok(if is_cancelled { Laid { status: Status::Cancelled, ..best } } else { best })
     }

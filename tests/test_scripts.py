@@ -47,6 +47,7 @@ import bench.wrap.methods
 import bench.wrap.pairs
 import changes
 import compatibility
+import debian
 import demo.figures
 import demo.measure
 import fuzz.python
@@ -122,7 +123,7 @@ def test_rust_is_checked_with_the_features_of_the_wheel():
 
 @ONLY_POSIX
 def test_without_root_there_is_no_window(monkeypatch, tmp_path):
-    monkeypatch.setattr(windows.os, "geteuid", lambda: 1000)
+    monkeypatch.setattr(debian.os, "geteuid", lambda: 1000)
     with pytest.raises(Unavailable, match="needs root"):
         windows.run_scripts(tmp_path / "authalic.zip", ["buttons"], tmp_path / "log")
 
@@ -132,13 +133,50 @@ def test_a_debian_system_that_cannot_be_made_is_left_out(monkeypatch, tmp_path):
     def fail(command, *_):
         raise CommandFailed(command, 1, "cannot resolve the host")
 
-    monkeypatch.setattr(windows.os, "geteuid", lambda: 0)
-    monkeypatch.setattr(windows.shutil, "which", lambda name: name)
-    monkeypatch.setattr(windows, "_CACHE", tmp_path)
-    monkeypatch.setattr(windows, "run", fail)
+    monkeypatch.setattr(debian.os, "geteuid", lambda: 0)
+    monkeypatch.setattr(debian.shutil, "which", lambda name: name)
+    monkeypatch.setattr(debian, "CACHE", tmp_path)
+    monkeypatch.setattr(debian, "run", fail)
     with pytest.raises(Unavailable, match=r"cannot resolve the host"):
         windows.run_scripts(tmp_path / "authalic.zip", ["buttons"], tmp_path / "log")
     assert not [path for path in tmp_path.iterdir() if path.is_dir()]
+
+
+@ONLY_POSIX
+def test_a_debian_system_is_made_again_when_it_lacks_a_package(monkeypatch, tmp_path):
+    made = []
+
+    def make(command, *_):
+        if command[0] == "mmdebstrap":
+            made.append(command)
+            status = Path(command[-1]) / "var" / "lib" / "dpkg" / "status"
+            status.parent.mkdir(parents=True)
+            names = next(word for word in command if word.startswith("--include=")).split("=")[1].split(",")
+            text = "".join(f"Package: {name}\nStatus: install ok installed\nVersion: 1\n\n" for name in names)
+            status.write_text(f"{text}Package: left\nStatus: deinstall ok config-files\n")
+        return ""
+
+    monkeypatch.setattr(debian.os, "geteuid", lambda: 0)
+    monkeypatch.setattr(debian.shutil, "which", lambda name: name)
+    monkeypatch.setattr(debian, "CACHE", tmp_path)
+    monkeypatch.setattr(debian, "run", make)
+    for packages, count in ((["a", "b"], 1), (["b"], 1), (["b", "c"], 2), (["a", "gone"], 3)):
+        root = debian.system("x", "sid", packages, tmp_path / "log")
+        assert root == tmp_path / "chroot-x" and len(made) == count, packages
+    assert debian.installed(root) == {"a", "gone"}  # of "left" only the settings are left
+
+
+@ONLY_POSIX
+def test_a_command_in_a_debian_system_keeps_its_words_and_shares_folders(tmp_path):
+    shared = tmp_path / "a folder"
+    shared.mkdir()
+    (tmp_path / "system" / "etc").mkdir(parents=True)
+    (tmp_path / "system" / "etc" / "resolv.conf").symlink_to("/etc/passwd")
+    words = debian.command(tmp_path / "system", ["echo", "two words"], [shared], {"NAME": "$x"}, shared)
+    assert words[-2:] == ["echo", "two words"] and words[0] == "unshare"
+    assert f"mount --bind '{shared}' '{tmp_path}/system{shared}'" in " ".join(words)
+    assert (tmp_path / f"system{shared}").is_dir() and "'NAME=$x'" in " ".join(words)
+    assert not (tmp_path / "system" / "etc" / "resolv.conf").is_symlink()
 
 
 def test_scripts_that_fail_in_a_window_are_run_once_more(monkeypatch, tmp_path):
@@ -152,7 +190,7 @@ def test_scripts_that_fail_in_a_window_are_run_once_more(monkeypatch, tmp_path):
         seen.append(list(names))
         return windows._by_script(runs[len(seen) - 1])
 
-    monkeypatch.setattr(windows, "debian", lambda suite, log: tmp_path)
+    monkeypatch.setattr(windows, "system", lambda suite, log: tmp_path)
     monkeypatch.setattr(windows, "_run_once", once)
     names = ["first", "second", "third", "lost"]
     assert windows.run_scripts(tmp_path / "authalic.zip", names, tmp_path / "log") == (4, 2)

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Sequence
 
+import debian
 import distribution
 import environment
 import windows
@@ -144,7 +146,7 @@ def _few() -> tuple[str, ...]:
 
 def _of_debian(name: str, requirements: str, wheel: Path, log: Path) -> Environment:
     """An environment whose `python` is that of a Debian system, which sees the project's folder."""
-    system = windows.debian(_DEBIAN, log)
+    system = windows.system(_DEBIAN, log)
     if not (system / "usr" / "bin" / f"python{name}").exists():
         raise Unavailable(f"Debian {_DEBIAN} in {system} has no Python {name}")
     target = Environment(f"python-{name}", VENVS / f"python-{name}", requirements)
@@ -155,20 +157,11 @@ def _of_debian(name: str, requirements: str, wheel: Path, log: Path) -> Environm
     tags = [f"--platform=manylinux_2_{minor}_x86_64" for minor in range(17, 36)]
     only = ["--only-binary=:all:", f"--python-version={name}", *tags]
     run([*pip, *only, "-r", environment.REQUIREMENTS / f"{requirements}.txt", wheel], log=log)
-    script = _IN_DEBIAN.format(system=system, root=ROOT, packages=packages, python=f"python{name}")
-    target.python.write_text(script, encoding="utf-8")
+    variables = {"PYTHONPATH": str(packages)}
+    command = debian.command(system, [f"python{name}"], [ROOT], variables, ROOT)
+    target.python.write_text(f'#!/bin/sh\nexec {shlex.join(command)} "$@"\n', encoding="utf-8")
     target.python.chmod(0o755)
     return target
-
-
-# The project's folder is mounted into the system while Python runs, in a namespace of its own.
-_IN_DEBIAN = """#!/bin/sh
-exec unshare --mount sh -c '
-mkdir -p "{system}{root}" && mount --bind "{root}" "{system}{root}" || exit 1
-mount --bind /proc "{system}/proc" && mount --bind /dev "{system}/dev" || exit 1
-exec chroot "{system}" env PYTHONPATH="{packages}" sh -c "cd \\"{root}\\" && exec {python} \\"\\$@\\"" sh "$@"
-' sh "$@"
-"""
 
 
 def _previous_archive(folder: Path) -> Path:

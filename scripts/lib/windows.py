@@ -14,7 +14,8 @@ import tempfile
 from pathlib import Path
 from typing import Sequence
 
-from shell import DIST, OUT, ROOT, CommandFailed, Unavailable, run, say, tail
+import debian
+from shell import DIST, OUT, ROOT, Unavailable, say, tail
 
 FOLDER = ROOT / "tests" / "gui"
 PICTURES = OUT / "gui"
@@ -22,13 +23,10 @@ SUITE = os.environ.get("AUTHALIC_GUI_SUITE") or "trixie"
 SECONDS = 400
 # What inside.sh ends with where Blender cannot open a window.
 _NO_WINDOW = 77
-_CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "authalic"
-_KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
 _PACKAGES = (
     "blender", "python3-numpy", "xvfb", "xauth", "imagemagick", "libgl1-mesa-dri", "libegl1", "libglx-mesa0",
     "fonts-dejavu-core",
 )  # fmt: skip
-_APT_OPTIONS = ('Apt::Install-Recommends "false"', 'Acquire::Check-Valid-Until "false"')
 _HELPERS = ("driver", "start")
 
 
@@ -44,14 +42,14 @@ def run_scripts(archive: Path, names: Sequence[str], log: Path) -> tuple[int, in
     on a busy machine an event may come too late. Raises Unavailable where there is no Debian system, or no
     window.
     """
-    system = debian(SUITE, log)
-    lines = _run_once(system, archive, names, log)
+    root = system(SUITE, log)
+    lines = _run_once(root, archive, names, log)
     again = [name for name in names if not _is_passed(lines.get(name, []))]
     if again:
         with open(str(log), "a", encoding="utf-8") as sink:
             sink.write(f"once more: {', '.join(again)}\n")
         lines.update({name: ["FAILED"] for name in again})
-        lines.update(_run_once(system, archive, again, log))
+        lines.update(_run_once(root, archive, again, log))
     every = [line for name in names for line in lines[name]]
     return sum(line.startswith("ok ") for line in every), sum(line.startswith("FAILED") for line in every)
 
@@ -60,12 +58,12 @@ def _is_passed(lines: Sequence[str]) -> bool:
     return bool(lines) and not any(line.startswith("FAILED") for line in lines)
 
 
-def _run_once(system: Path, archive: Path, names: Sequence[str], log: Path) -> dict[str, list[str]]:
+def _run_once(root: Path, archive: Path, names: Sequence[str], log: Path) -> dict[str, list[str]]:
     """The lines of the checks of each script that came to its end."""
-    work = Path(tempfile.mkdtemp(prefix="authalic-gui-", dir=str(system / "tmp")))
+    work = Path(tempfile.mkdtemp(prefix="authalic-gui-", dir=str(root / "tmp")))
     try:
         _prepare(work, archive)
-        _start(system, work, names)
+        _start(root, work, names)
         return _by_script(_collect(work, log))
     finally:
         shutil.rmtree(str(work), ignore_errors=True)
@@ -102,10 +100,10 @@ def _prepare(work: Path, archive: Path) -> None:
             shutil.copy(str(path), str(work))
 
 
-def _start(system: Path, work: Path, names: Sequence[str]) -> None:
+def _start(root: Path, work: Path, names: Sequence[str]) -> None:
     """Runs inside.sh in the system; what Blender says goes to a file beside it."""
-    inside = f"/{work.relative_to(system)}"
-    command = ["chroot", system, "bash", "-c", f"cd {inside} && exec bash inside.sh {SECONDS}"]
+    inside = f"/{work.relative_to(root)}"
+    command = ["chroot", root, "bash", "-c", f"cd {inside} && exec bash inside.sh {SECONDS}"]
     env = {**os.environ, "AUTHALIC_GUI_SCRIPTS": " ".join(names)}
     with open(str(work / "blender.log"), "w") as output:
         done = subprocess.run(
@@ -113,7 +111,7 @@ def _start(system: Path, work: Path, names: Sequence[str]) -> None:
         )
     if done.returncode == _NO_WINDOW:
         text = (work / "blender.log").read_text(encoding="utf-8", errors="replace")
-        raise Unavailable(f"Blender cannot open a window in {system}:\n{tail(text, 5)}")
+        raise Unavailable(f"Blender cannot open a window in {root}:\n{tail(text, 5)}")
 
 
 def _collect(work: Path, log: Path) -> list[str]:
@@ -131,41 +129,9 @@ def _collect(work: Path, log: Path) -> list[str]:
     return text.splitlines()
 
 
-def debian(suite: str, log: Path) -> Path:
+def system(suite: str, log: Path) -> Path:
     """The folder of a Debian system with Blender and Python, which is made on first use."""
-    folder = _CACHE / f"chroot-{suite}"
-    if not hasattr(os, "geteuid") or os.geteuid() != 0:
-        raise Unavailable("a window needs root, for a Debian system of its own")
-    if not shutil.which("apt-get"):
-        raise Unavailable("a window needs Debian's package tools, which this system does not have")
-    _CACHE.mkdir(parents=True, exist_ok=True)
-    import fcntl  # Windows has none, and does not come here
-
-    with open(str(_CACHE / f"{folder.name}.lock"), "w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not (folder / "usr/bin/blender").exists():
-            _make_system(folder, suite, log)
-    return folder
-
-
-def _make_system(folder: Path, suite: str, log: Path) -> None:
-    say(f"making a Debian system with Blender in {folder} ...")
-    shutil.rmtree(str(folder), ignore_errors=True)
-    new = folder.with_suffix(".new")
-    shutil.rmtree(str(new), ignore_errors=True)
-    try:
-        if not shutil.which("mmdebstrap"):
-            env = {"DEBIAN_FRONTEND": "noninteractive"}
-            run(["apt-get", "update"], env, log)
-            run(["apt-get", "-o", "DPkg::Lock::Timeout=300", "install", "-y", "-qq", "mmdebstrap"], env, log)
-        options = [f"--aptopt={option}" for option in _APT_OPTIONS]
-        command = ["mmdebstrap", "--variant=minbase", "--skip=check/empty", *options]
-        run([*command, f"--include={','.join(_PACKAGES)}", f"--keyring={_KEYRING}", suite, new], None, log)
-    except CommandFailed as failure:
-        shutil.rmtree(str(new), ignore_errors=True)
-        reason = tail(failure.output, 3)
-        raise Unavailable(f"Debian {suite} could not be installed into {folder}:\n{reason}") from failure
-    new.rename(folder)
+    return debian.system(suite, suite, _PACKAGES, log)
 
 
 if __name__ == "__main__":

@@ -27,8 +27,9 @@ _VARIABLES = {"PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/
 def system(name: str, suite: str, packages: Sequence[str], log: Path) -> Path:
     """The folder of a Debian system with packages, which is made on first use.
 
-    `name` tells systems apart, and `suite` is the release of Debian, e.g. "sid". A system that lacks a package
-    is made anew. Packages that others only recommend are left out. Raises Unavailable where there can be none.
+    `name` tells systems apart, and `suite` is the release of Debian, e.g. "sid". A system that lacks a
+    package is made anew. Packages that others only recommend are left out. Raises Unavailable where there can
+    be none.
     """
     folder = CACHE / f"chroot-{name}"
     if not hasattr(os, "geteuid") or os.geteuid() != 0:
@@ -117,6 +118,6 @@ def _make(folder: Path, suite: str, packages: Sequence[str], log: Path) -> None:
 
 
 def _mirror() -> list[str]:
-    """Where this machine's own Debian has its packages from; empty, for the usual place, on another system."""
+    """Where this machine's own Debian has its packages from; empty on another system: the usual place."""
     listing = ["apt-get", "indextargets", "--format", "$(REPO_URI)", "Created-By: Packages"]
     return run([*listing, "Origin: Debian", "Label: Debian"]).split()[:1]

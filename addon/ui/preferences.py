@@ -91,7 +91,8 @@ def _apply() -> None:
     preferences: Any = addon.preferences
     if preferences.threads:
         bridge.set_threads(preferences.threads)
-    if preferences.preset != "EVEN":
+    # Empty if it is none of this version's presets.
+    if preferences.preset not in ("EVEN", ""):
         _preset_changed(preferences, bpy.context)
     _colors_changed(preferences, bpy.context)
 

@@ -31,6 +31,11 @@ def of(extension: str) -> Any:
     return addon.preferences
 
 
+def is_5() -> bool:
+    """From Blender 5.0 on, what properties keep is apart from what scripts keep."""
+    return bpy.app.version >= (5, 0)
+
+
 @pytest.fixture
 def preferences(extension: str) -> Any:
     """The preferences, which are as they were afterwards."""
@@ -96,6 +101,16 @@ def test_saved_preferences_count_when_the_extension_is_enabled(preferences: Any,
     part("ui.preferences").register()
     assert bpy.context.window_manager.operator_properties_last("authalic.unwrap").angle_preset == "BALANCED"
     assert part("overlay.heat_map").colors().small == (0.0, 1.0, 0.0)
+
+
+def test_a_saved_preset_that_is_none_counts_as_the_default(preferences: Any) -> None:
+    """Blender keeps a number, which another version of the extension may have saved."""
+    stored: Any = preferences.bl_system_properties_get(do_create=True) if is_5() else preferences
+    stored["preset"] = 99
+    assert preferences.preset == ""
+    part("ui.preferences").unregister()
+    part("ui.preferences").register()
+    assert bpy.context.window_manager.operator_properties_last("authalic.unwrap").angle_preset == "EVEN"
 
 
 def test_the_colors_are_those_of_the_heat_map(preferences: Any) -> None:

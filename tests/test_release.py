@@ -15,7 +15,7 @@ import changelog
 import distribution
 import pythons
 import shell
-from release import agreement, extensions, inspection, notices, places, platforms
+from release import agreement, extensions, inspection, notices, own_crates, places, platforms
 from release.main import STEPS, _verdict
 from shell import ROOT, Unavailable
 
@@ -305,6 +305,67 @@ def test_the_licenses_are_those_of_the_crates_that_are_compiled():
     )
     assert listed <= set(lock), f"run `scripts/release licenses --write`: {listed - set(lock)}"
     assert "Regents of the University of Minnesota" in (ROOT / notices.NAME).read_text(encoding="utf-8")
+
+
+def test_the_licenses_are_gathered_for_all_platforms_that_have_wheels():
+    text = notices.CONFIGURATION.read_text(encoding="utf-8")
+    gathered = re.findall(r'"(.+)"', text.partition("targets = [")[2].partition("]")[0])
+    assert set(gathered) == {platform.target for platform in platforms.PLATFORMS.values()}
+
+
+def components(*crates: str) -> dict:
+    """An SBOM of crates in a row, each of which needs the next, as "name 1.0"."""
+    parts = [{"bom-ref": each, "name": each.split()[0], "version": each.split()[1]} for each in crates]
+    needs = [
+        {"ref": each, "dependsOn": [*crates[place + 1 : place + 2]]} for place, each in enumerate(crates)
+    ]
+    first, *others = parts
+    return {"bomFormat": "CycloneDX", "metadata": {"component": first}, "components": others} | {
+        "dependencies": needs
+    }
+
+
+@pytest.mark.parametrize(
+    ("tag", "has", "lacks"),
+    [
+        ("manylinux_2_28_x86_64", {"metis-sys", "private-gemm-x86"}, {"windows-sys", "sysctl"}),
+        ("manylinux_2_28_aarch64", {"metis-sys"}, {"windows-sys", "private-gemm-x86", "sysctl"}),
+        ("musllinux_1_2_x86_64", {"metis-sys"}, {"windows-sys"}),
+        ("macosx_11_0_arm64", {"metis-sys", "sysctl"}, {"windows-sys", "private-gemm-x86"}),
+        ("win_amd64", {"windows-sys", "windows_x86_64_msvc"}, {"metis-sys", "metis", "windows_aarch64_msvc"}),
+        ("win_arm64", {"windows-sys", "windows_aarch64_msvc"}, {"metis-sys", "metis", "private-gemm-x86"}),
+    ],
+)
+def test_a_wheel_lists_the_crates_of_its_own_platform(built, tmp_path, tag, has, lacks):
+    wheel = built[0].with_name(built[0].name.replace("manylinux_2_28_x86_64", tag))
+    info = f"authalic-{shell.version()}.dist-info"
+    everything = (ROOT / notices.NAME).read_text(encoding="utf-8")
+    crates = [f"{name} {number}" for name, number in sorted(notices.compiled())]
+    bill = components("authalic-python 0.0.0", "authalic 0.0.0", *crates, "cc 1.0.0")
+    with zipfile.ZipFile(wheel, "w") as archive:
+        archive.writestr("authalic/py.typed", "")
+        archive.writestr(f"{info}/licenses/{notices.NAME}", everything)
+        archive.writestr(f"{info}/sboms/authalic-python.cyclonedx.json", json.dumps(bill))
+        archive.writestr(f"{info}/RECORD", "")
+    own = notices.compiled([platforms.of_wheel(wheel).target])
+    narrow = own_crates.narrow(wheel, own, tmp_path / "narrow.whl").rename(wheel)
+    with zipfile.ZipFile(narrow) as archive:
+        text = archive.read(f"{info}/licenses/{notices.NAME}").decode()
+        bill = json.loads(archive.read(f"{info}/sboms/authalic-python.cyclonedx.json"))
+        record = archive.read(f"{info}/RECORD").decode()
+        assert record.splitlines()[-1] == f"{info}/RECORD,," and len(record.splitlines()) == 4
+    names = {name for name, _ in notices.listed(text)}
+    assert has <= names and not lacks & names
+    assert text.count("```") % 2 == 0 and ("METIS" in text or "Regents" in text) == ("metis-sys" in has)
+    found = {(each["name"], each["version"]) for each in bill["components"]} - {("authalic", "0.0.0")}
+    assert found == notices.listed(text) == own and inspection.problems_of_lists(narrow, found) == []
+    refs = {each["bom-ref"] for each in bill["components"]} | {"authalic-python 0.0.0"}
+    assert {row["ref"] for row in bill["dependencies"]} == refs
+    assert all(set(row["dependsOn"]) <= refs for row in bill["dependencies"])
+    [lacking, strange] = inspection.problems_of_lists(
+        narrow, found - {("faer", "0.24.4")} | {("cc", "1.0.0")}
+    )
+    assert "the SBOM" in lacking and "lacks faer" in lacking and "cc 1.0.0" in strange
 
 
 @pytest.mark.parametrize("job", JOBS)

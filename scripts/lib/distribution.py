@@ -8,6 +8,7 @@ import os
 import re
 import shutil
 import sysconfig
+import zipfile
 from pathlib import Path
 
 import changelog
@@ -22,7 +23,7 @@ WHEEL_SOURCES = (
     *("Cargo.toml", "Cargo.lock", "pyproject.toml", "README.md"),
     *(THIRD_PARTY, "rust/core", "rust/python"),
 )
-EXTENSION_SOURCES = ("addon", "docs/blender.md", "scripts/lib/manual.py", THIRD_PARTY)
+EXTENSION_SOURCES = ("addon", "docs/blender.md", "scripts/lib/manual.py")
 PORTABLE = ("--zig", "--compatibility", "manylinux_2_28")
 # Blender's names of platforms by what the tags of wheels begin and end with. Blender has no build for musl.
 _PLATFORMS = {
@@ -93,7 +94,7 @@ def pack_extension(target: Path, wheel: Path, blender: Environment, log: Path | 
     """
     folder = OUT / "extension"
     _lay_out_extension(folder, wheel, ROOT, version())
-    _add_documents(folder)
+    _add_documents(folder, wheel)
     _settle(folder)
     target.unlink(missing_ok=True)
     blender_ext(blender, "validate", folder, log=log)
@@ -176,9 +177,11 @@ def _lay_out_extension(folder: Path, wheel: Path, root: Path, number: str) -> No
     (folder / "blender_manifest.toml").write_text(manifest, encoding="utf-8")
 
 
-def _add_documents(folder: Path) -> None:
-    """The manual, and the licenses of what the wheel is made of."""
-    shutil.copy(ROOT / THIRD_PARTY, folder)
+def _add_documents(folder: Path, wheel: Path) -> None:
+    """The manual, and the licenses of what the wheel is made of, which it has itself."""
+    with zipfile.ZipFile(wheel) as archive:
+        [licenses] = [name for name in archive.namelist() if name.endswith(f"/licenses/{THIRD_PARTY}")]
+        (folder / THIRD_PARTY).write_bytes(archive.read(licenses))
     text = (ROOT / "docs" / "blender.md").read_text(encoding="utf-8")
     (folder / "manual.html").write_text(manual.to_html(text), encoding="utf-8")
 

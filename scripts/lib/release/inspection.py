@@ -9,7 +9,7 @@ import zipfile
 from pathlib import Path
 
 import environment
-from release import notices, places
+from release import notices, places, platforms
 from release.problems import Refused, refuse_any
 from shell import ROOT, run, version
 
@@ -30,7 +30,7 @@ def inspect(log: Path | None = None) -> None:
     for wheel in places.wheels():
         _audit(wheel, tools, log)
         problems += problems_of_wheel(wheel)
-        _validate_sbom(wheel, tools, log)
+        problems += problems_of_lists(wheel, _in_sbom(wheel, tools, log))
     refuse_any(problems)
 
 
@@ -74,12 +74,28 @@ def is_promised(policy: str, name: str) -> bool:
     return (int(found[2]), int(found[3])) <= (int(named[2]), int(named[3]))
 
 
-def _validate_sbom(wheel: Path, tools: environment.Environment, log: Path | None) -> None:
-    """The list of crates is valid CycloneDX, and names the crates whose licenses are listed."""
+def problems_of_lists(wheel: Path, in_sbom: set[tuple[str, str]]) -> list[str]:
+    """What of a wheel's two lists of crates is not what its platform's compiler compiles, a sentence each."""
+    with zipfile.ZipFile(str(wheel)) as archive:
+        info = f"authalic-{version()}.dist-info"
+        licensed = notices.listed(archive.read(f"{info}/licenses/{notices.NAME}").decode())
+    crates = notices.compiled([platforms.of_wheel(wheel).target])
+    return [
+        f"{what} of {wheel.name} {fault} {name} {number}"
+        for what, found in ((notices.NAME, licensed), ("the SBOM", in_sbom))
+        for fault, differing in (
+            ("lacks", crates - found),
+            ("has a crate that is not in it:", found - crates),
+        )
+        for name, number in sorted(differing)
+    ]
+
+
+def _in_sbom(wheel: Path, tools: environment.Environment, log: Path | None) -> set[tuple[str, str]]:
+    """The crates of others in a wheel's list of crates, which must be valid CycloneDX."""
     program = ROOT / "scripts/lib/release/read_sbom.py"
-    listed = set(run([tools.python, program, wheel], log=log).split())
-    missing = {crate for crate, _ in notices.listed()} - listed
-    refuse_any([f"the SBOM of {wheel.name} does not list {crate}" for crate in sorted(missing)])
+    rows = [line.split() for line in run([tools.python, program, wheel], log=log).splitlines()]
+    return {(name, number) for name, number in rows if name != "authalic"}
 
 
 def _problems_of_sdist(sdist: Path) -> list[str]:

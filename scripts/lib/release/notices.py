@@ -5,9 +5,11 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Collection
 
 import distribution
 from release import cargo_tools, places
+from release.platforms import PLATFORMS
 from release.problems import refuse_any
 from shell import ROOT, run
 
@@ -45,15 +47,27 @@ def check(log: Path | None = None) -> None:
     refuse_any([] if is_new else [f"{NAME} is not up to date: run `scripts/release licenses --write`"])
 
 
-def listed() -> set[tuple[str, str]]:
-    """The names and versions of the crates in the file."""
-    return set(re.findall(r"(?m)^- (\S+) (\d\S*)$", (ROOT / NAME).read_text(encoding="utf-8")))
+def listed(text: str | None = None) -> set[tuple[str, str]]:
+    """The names and versions of the crates in the file, or in another text of its form."""
+    if text is None:
+        text = (ROOT / NAME).read_text(encoding="utf-8")
+    return set(re.findall(r"(?m)^- (\S+) (\d\S*)$", text))
 
 
-def compiled() -> set[tuple[str, str]]:
-    """The names and versions of the crates that are compiled into a wheel of any platform, as cargo says."""
-    text = CONFIGURATION.read_text(encoding="utf-8")
-    targets = re.findall(r'"(.+)"', text.partition("targets = [")[2].partition("]")[0])
+def of(crates: Collection[tuple[str, str]], text: str) -> str:
+    """The file for some of its crates: the licenses that none of them is under are left out."""
+    head, *sections = re.split(r"(?m)^(?=## )", text)
+    kept = [
+        re.sub(r"(?m)^- (\S+) (\d\S*)\n", lambda row: row[0] if row.groups() in crates else "", section)
+        for section in sections
+        if listed(section) & set(crates)
+    ]
+    return (head + "".join(kept)).rstrip() + "\n"
+
+
+def compiled(targets: Collection[str] | None = None) -> set[tuple[str, str]]:
+    """The names and versions of the crates that are compiled for targets, by default any, as cargo says."""
+    targets = targets or [platform.target for platform in PLATFORMS.values()]
     command = ["cargo", "tree", "--locked", "--package", "authalic-python", *_FEATURES]
     command += ["--edges", "normal", "--prefix", "none", "--format", "{p}"]
     tree = run([*command, *(word for target in targets for word in ("--target", target))])

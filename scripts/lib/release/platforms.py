@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Mapping
 
 import distribution
@@ -12,8 +13,9 @@ from shell import Unavailable
 
 @dataclass(frozen=True)
 class Platform:
-    """How maturin builds the wheel of a platform."""
+    """The target of the compiler, and how maturin builds the wheel of a platform."""
 
+    target: str
     options: tuple[str, ...]
     variables: Mapping[str, str] = field(default_factory=dict)
 
@@ -24,19 +26,25 @@ class Platform:
 
 _OLDEST_MACOS = {"MACOSX_DEPLOYMENT_TARGET": "11.0"}
 PLATFORMS = {
-    "linux-x64": Platform(distribution.PORTABLE),
-    "linux-arm64": Platform(distribution.PORTABLE),
+    "linux-x64": Platform("x86_64-unknown-linux-gnu", distribution.PORTABLE),
+    "linux-arm64": Platform("aarch64-unknown-linux-gnu", distribution.PORTABLE),
     "musl-x64": Platform(
-        ("--zig", "--compatibility", "musllinux_1_2", "--target", "x86_64-unknown-linux-musl")
+        "x86_64-unknown-linux-musl",
+        ("--zig", "--compatibility", "musllinux_1_2", "--target", "x86_64-unknown-linux-musl"),
     ),
-    "macos-arm64": Platform(("--target", "aarch64-apple-darwin"), _OLDEST_MACOS),
-    "macos-x64": Platform(("--target", "x86_64-apple-darwin"), _OLDEST_MACOS),
-    "windows-x64": Platform(()),
-    "windows-arm64": Platform(()),
+    "macos-arm64": Platform("aarch64-apple-darwin", ("--target", "aarch64-apple-darwin"), _OLDEST_MACOS),
+    "macos-x64": Platform("x86_64-apple-darwin", ("--target", "x86_64-apple-darwin"), _OLDEST_MACOS),
+    "windows-x64": Platform("x86_64-pc-windows-msvc", ()),
+    "windows-arm64": Platform("aarch64-pc-windows-msvc", ()),
 }
 """By Blender's names, except for the Linux without glibc, where there is no Blender."""
 FREE_THREADED = "3.14t"
 """The Python without a global lock that has wheels of its own: the stable interface leaves it out."""
+
+
+def of_wheel(wheel: Path) -> Platform:
+    """The platform of a wheel, by its name."""
+    return named("musl-x64" if "-musllinux_" in wheel.name else distribution.platform_of(wheel))
 
 
 def named(name: str | None) -> Platform:

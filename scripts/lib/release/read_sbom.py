@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Prints the names of the crates in a wheel's SBOM, if it is valid. It runs in .venv/release."""
+"""Prints the names and versions of the crates in a wheel's SBOM, if it is valid. It runs in .venv/release."""
 
 import json
 import sys
@@ -17,7 +17,7 @@ def main(wheel: str) -> None:
     problem = JsonStrictValidator(SchemaVersion.from_version(bill["specVersion"])).validate_str(text)
     if problem is not None:
         sys.exit(f"{name} is not valid CycloneDX {bill['specVersion']}: {problem}")
-    print("\n".join(component["name"] for component in bill["components"]))
+    print("\n".join(f"{component['name']} {component['version']}" for component in bill["components"]))
 
 
 main(sys.argv[1])

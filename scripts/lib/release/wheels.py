@@ -12,7 +12,7 @@ from pathlib import Path
 import changelog
 import environment
 import pythons
-from release import places, sources
+from release import notices, own_crates, places, sources
 from release.platforms import FREE_THREADED, Platform, named
 from shell import ROOT, CommandFailed, Unavailable, run, tail
 
@@ -54,7 +54,7 @@ def _build(platform: Platform, free_threaded: bool, folder: Path, log: Path | No
     shutil.rmtree(source.parent)  # half a gigabyte of objects
     [wheel] = (places.WORK / "new").glob("*.whl")
     folder.mkdir(parents=True, exist_ok=True)
-    return Path(shutil.move(str(wheel), str(folder / wheel.name)))
+    return own_crates.narrow(wheel, notices.compiled([platform.target]), folder / wheel.name)
 
 
 def _variables(tools: environment.Environment, source: Path) -> dict[str, str]:

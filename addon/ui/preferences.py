@@ -4,6 +4,7 @@
 from typing import Any
 
 import bpy
+from bpy.app.handlers import persistent
 from bpy.props import EnumProperty, FloatVectorProperty, IntProperty
 
 from .. import bridge
@@ -83,25 +84,46 @@ class AUTHALIC_AP_preferences(bpy.types.AddonPreferences):
         self.layout.operator("wm.url_open", text="Manual", icon="HELP").url = manual.address()
 
 
+def _saved() -> Any:
+    """The preferences, or None."""
+    addon: Any = bpy.context.preferences.addons.get(_ADDON)
+    return None if addon is None else addon.preferences
+
+
+def start_with_preset() -> None:
+    """Lets the panels start with the preset."""
+    preferences = _saved()
+    # Empty if it is none of this version's presets.
+    if preferences is not None and preferences.preset not in ("EVEN", ""):
+        _preset_changed(preferences, bpy.context)
+
+
+@persistent  # type: ignore[untyped-decorator]
+def _loaded(*_: object) -> None:
+    """Blender forgets the last options of operators once it has opened a file and called this."""
+    if not bpy.app.timers.is_registered(start_with_preset):
+        bpy.app.timers.register(start_with_preset, first_interval=0)
+
+
 def _apply() -> None:
     """Lets saved preferences count from the start."""
-    addon: Any = bpy.context.preferences.addons.get(_ADDON)
-    if addon is None or addon.preferences is None:
+    if (preferences := _saved()) is None:
         return
-    preferences: Any = addon.preferences
     if preferences.threads:
         bridge.set_threads(preferences.threads)
-    # Empty if it is none of this version's presets.
-    if preferences.preset not in ("EVEN", ""):
-        _preset_changed(preferences, bpy.context)
+    start_with_preset()
     _colors_changed(preferences, bpy.context)
 
 
 def register() -> None:
     bpy.utils.register_class(AUTHALIC_AP_preferences)
     _apply()
+    bpy.app.handlers.load_post.append(_loaded)
 
 
 def unregister() -> None:
+    bpy.app.handlers.load_post.remove(_loaded)
+    if bpy.app.timers.is_registered(start_with_preset):
+        bpy.app.timers.unregister(start_with_preset)
     heat_map.use(Colors())
     bpy.utils.unregister_class(AUTHALIC_AP_preferences)

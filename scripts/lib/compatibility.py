@@ -18,8 +18,9 @@ from environment import Environment
 from shell import ROOT, VENVS, CommandFailed, Unavailable, run, say, version
 from steps import Count, TestsFailed, run_pytest
 
-# Version 0.1.0 as it was used: the last commit before the extension's files were moved.
-PREVIOUS, _PREVIOUS_COMMIT = "0.1.0", "7ea7610"
+PREVIOUS = "0.1.0"
+# Version 0.1.0 as it was used: before the extension's files were moved, and with preferences.
+_PREVIOUS_COMMITS = ("7ea7610", "092ef66")
 BLENDERS = ("4.2", "4.5", "5.0", "5.1", "5.2", "5.3")
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 _PARTS = ("test_1_before.py", "test_2_update.py", "test_3_restart.py", "test_4_after.py")
@@ -63,11 +64,14 @@ def check_blenders(only: Sequence[str], wheel: Path, folder: Path, is_brief: boo
     if not wanted:
         return []
     archive = distribution.build_zip(wheel, environment.any_blender())
-    previous = _previous_archive(folder)
+    previous = {commit: _previous_archive(folder, commit) for commit in _PREVIOUS_COMMITS}
     rows = []
     for name in wanted:
+        for commit, old in previous.items():
+            log = folder / f"blender-{name}-{commit}.log"
+            what = f"update from {PREVIOUS} ({commit})"
+            rows.append(_row(f"Blender {name}", what, _update, name, archive, old, log))
         log = folder / f"blender-{name}.log"
-        rows.append(_row(f"Blender {name}", f"update from {PREVIOUS}", _update, name, archive, previous, log))
         if not is_brief:
             rows.append(_row(f"Blender {name}", "all tests", _suite, name, archive, log))
     return rows
@@ -164,21 +168,22 @@ def _of_debian(name: str, requirements: str, wheel: Path, log: Path) -> Environm
     return target
 
 
-def _previous_archive(folder: Path) -> Path:
-    """The extension's zip of version 0.1.0, which is built from its commit once."""
-    archive = folder / f"authalic-{PREVIOUS}-{_PREVIOUS_COMMIT}.zip"
+def _previous_archive(folder: Path, commit: str) -> Path:
+    """The extension's zip of version 0.1.0, which is built from a commit once."""
+    archive = folder / f"authalic-{PREVIOUS}-{commit}.zip"
     if archive.exists():
         return archive
-    say(f"building version {PREVIOUS} from commit {_PREVIOUS_COMMIT} ...")
+    say(f"building version {PREVIOUS} from commit {commit} ...")
     source = folder / "previous"
     shutil.rmtree(source, ignore_errors=True)
     source.mkdir()
     try:
         packed = folder / "previous.tar"
-        run(["git", "archive", f"--output={packed}", _PREVIOUS_COMMIT])
+        run(["git", "archive", f"--output={packed}", commit])
         run(["tar", "-xf", packed, "-C", source])
     except CommandFailed as failure:
-        missing = f"commit {_PREVIOUS_COMMIT} is not in this clone (`git fetch --unshallow`)"
+        missing = f"commit {commit} is not in this clone (`git fetch --unshallow`)"
         raise Unavailable(missing) from failure
     distribution.build_previous(source, PREVIOUS, archive, environment.dev(), environment.any_blender())
+    shutil.rmtree(source)  # a gigabyte of objects
     return archive

@@ -103,6 +103,22 @@ def test_saved_preferences_count_when_the_extension_is_enabled(preferences: Any,
     assert part("overlay.heat_map").colors().small == (0.0, 1.0, 0.0)
 
 
+def test_the_panels_start_with_the_preset_in_every_file(preferences: Any, tmp_path: Path) -> None:
+    """Blender forgets the last options of operators as it opens a file; a timer sets them anew."""
+    preferences.preset = "SOFT"
+    path, timer = str(tmp_path / "file.blend"), part("ui.preferences").start_with_preset
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    for load, options in ((bpy.ops.wm.read_homefile, {}), (bpy.ops.wm.open_mainfile, {"filepath": path})):
+        load(**options)
+        assert bpy.app.timers.is_registered(timer)
+        timer()  # Blender without a window runs none
+        for name in ("authalic.unwrap", "authalic.sphere_shape_key"):
+            assert bpy.context.window_manager.operator_properties_last(name).angle_preset == "SOFT"
+    part("ui.preferences").unregister()
+    assert not bpy.app.timers.is_registered(timer)
+    part("ui.preferences").register()
+
+
 def test_a_saved_preset_that_is_none_counts_as_the_default(preferences: Any) -> None:
     """Blender keeps a number, which another version of the extension may have saved."""
     stored: Any = preferences.bl_system_properties_get(do_create=True) if is_5() else preferences

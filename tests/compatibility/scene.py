@@ -14,10 +14,22 @@ from meshes import MeshObject
 
 MODULE = "bl_ext.user_default.authalic"
 FOLDER = Path(os.environ["AUTHALIC_COMPATIBILITY"])
+PROFILE = Path(os.environ["BLENDER_USER_RESOURCES"])
 SAVED, LANDMARKS, FACTS = FOLDER / "before.blend", FOLDER / "landmarks.json", FOLDER / "facts.json"
 POINTS = [("Nose", 0), ("Landmark 2", 5), ("Chin", 17), ("Back", 40)]
 ROW, ROW_B = (8, 9, 10, 11), (10, 11, 12, 13, 14)
 KEY, KEY_OF_SHEETS = "Morph → Ball B", "Morph → Sheet B"
+# Preferences that are not the defaults, of numbers that have no rounding.
+PREFERENCES: dict[str, Any] = {
+    "threads": 3,
+    "preset": "SOFT",
+    "small": [0.0, 1.0, 0.5],
+    "fair": [0.5, 0.25, 0.75],
+    "large": [1.0, 0.0, 0.25],
+    "flipped": [0.125, 0.0, 0.0],
+}
+COLORS = ("small", "fair", "large", "flipped")
+SETTINGS = {"show": False, "landmarks": [2, 0], "curves": [0, 0]}
 
 
 def install(archive: str) -> None:
@@ -37,12 +49,38 @@ def manifest() -> str:
 
 
 def folder() -> Path:
-    return Path(os.environ["BLENDER_USER_RESOURCES"]) / "extensions" / "user_default" / "authalic"
+    return PROFILE / "extensions" / "user_default" / "authalic"
+
+
+def preferences() -> Any:
+    """The preferences of the extension, or None: an early version 0.1.0 has none."""
+    addon: Any = bpy.context.preferences.addons[MODULE]
+    return addon.preferences
+
+
+def values_of_preferences() -> dict[str, Any] | None:
+    """What the preferences are, in the form of PREFERENCES."""
+    found = preferences()
+    if found is None:
+        return None
+    values = {name: getattr(found, name) for name in PREFERENCES}
+    return {name: list(value) if name in COLORS else value for name, value in values.items()}
+
+
+def settings() -> dict[str, Any]:
+    """What the open file keeps of the panels."""
+    scene: Any = bpy.context.scene
+    objects: list[Any] = [bpy.data.objects[name] for name in ("Ball A", "Sheet A")]
+    return {
+        "show": scene.authalic_show_landmarks,
+        "landmarks": [obj.authalic_landmark_index for obj in objects],
+        "curves": [obj.authalic_landmark_curve_index for obj in objects],
+    }
 
 
 def installed_libraries() -> list[str]:
     """The native libraries that Blender has unpacked for its extensions."""
-    place = Path(os.environ["BLENDER_USER_RESOURCES"]) / "extensions" / ".local"
+    place = PROFILE / "extensions" / ".local"
     found = place.rglob("authalic/_native*")
     return sorted(str(path.relative_to(place)) for path in found if path.suffix != ".pyi")
 

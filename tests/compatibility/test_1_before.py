@@ -36,6 +36,9 @@ def test_landmarks_curves_and_wraps_are_saved() -> None:
     assert bpy.ops.authalic.register(method="CURVES") == {"FINISHED"}
     assert bpy.ops.authalic.unwrap() == {"FINISHED"}
     uvs = [round(value, 6) for each in sheet.data.uv_layers.active.uv for value in each.vector]
+    bpy.data.objects["Ball A"].authalic_landmark_index = 2
+    bpy.context.scene.authalic_show_landmarks = False
+    assert scene.settings() == scene.SETTINGS
     facts = {
         "balls": scene.key_positions("Ball A", scene.KEY),
         "sheets": scene.key_positions("Sheet A", scene.KEY_OF_SHEETS),
@@ -45,3 +48,14 @@ def test_landmarks_curves_and_wraps_are_saved() -> None:
     }
     scene.FACTS.write_text(json.dumps(facts), encoding="utf-8")
     bpy.ops.wm.save_as_mainfile(filepath=str(scene.SAVED), compress=True)
+
+
+def test_preferences_are_set() -> None:
+    """They are saved as this Blender ends; an early version 0.1.0 has none."""
+    preferences = scene.preferences()
+    if preferences is not None:
+        for name, value in scene.PREFERENCES.items():
+            setattr(preferences, name, value)
+    facts = {**scene.read_facts(), "preferences": scene.values_of_preferences()}
+    assert facts["preferences"] in (None, scene.PREFERENCES)
+    scene.FACTS.write_text(json.dumps(facts), encoding="utf-8")

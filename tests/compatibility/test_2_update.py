@@ -10,6 +10,7 @@ import scene
 
 def test_version_0_1_0_is_enabled_at_the_start(started_with: dict[str, Any]) -> None:
     assert scene.MODULE in started_with["addons"] and 'version = "0.1.0"' in scene.manifest()
+    assert scene.values_of_preferences() == scene.read_facts()["preferences"]
     bpy.ops.wm.open_mainfile(filepath=str(scene.SAVED))
     bpy.context.view_layer.objects.active = bpy.data.objects["Sheet A"]
     # in use: its library is in memory
@@ -31,7 +32,9 @@ def test_what_the_file_keeps_outlives_the_time_until_the_restart() -> None:
     bpy.ops.wm.save_as_mainfile(filepath=path)
 
 
-def test_it_is_disabled_and_enabled() -> None:
+def test_it_is_disabled_and_enabled(quitting: dict[str, bool]) -> None:
+    bpy.ops.wm.save_userpref()
+    quitting["saves"] = False  # Blender forgets the preferences of what is disabled
     bpy.ops.preferences.addon_disable(module=scene.MODULE)
     assert not [name for name in dir(bpy.types) if name.startswith("AUTHALIC_")]
     bpy.ops.preferences.addon_enable(module=scene.MODULE)

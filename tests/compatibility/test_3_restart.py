@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the new version makes of what version 0.1.0 has left."""
 
+import importlib
 import os
 from typing import Any
 
@@ -16,6 +17,26 @@ def test_the_new_version_is_enabled_at_the_start(started_with: dict[str, Any]) -
 
     assert authalic.__version__ == os.environ["AUTHALIC_VERSION"]
     assert f'version = "{authalic.__version__}"' in scene.manifest()
+
+
+def test_preferences_are_as_they_were() -> None:
+    """Or the defaults, after a version that has none."""
+    before = scene.read_facts()["preferences"]
+    values: Any = scene.values_of_preferences()
+    if before:
+        assert values == before == scene.PREFERENCES
+    else:
+        assert (values["threads"], values["preset"]) == (0, "EVEN")
+    # They count, in the panels and in the heat map. Blender without a window runs no timers.
+    timer = importlib.import_module(f"{scene.MODULE}.ui.preferences").start_with_preset
+    if bpy.app.timers.is_registered(timer):
+        timer()
+    last = bpy.context.window_manager.operator_properties_last("authalic.unwrap")
+    assert last.angle_preset == values["preset"]
+    heat_map = importlib.import_module(f"{scene.MODULE}.overlay.heat_map")
+    assert {name: list(getattr(heat_map.colors(), name)) for name in scene.COLORS} == {
+        name: pytest.approx(values[name]) for name in scene.COLORS
+    }
 
 
 @pytest.fixture(params=["before", "meanwhile"])
@@ -48,6 +69,10 @@ def test_landmarks_curves_and_morphs_are_as_they_were(saved: dict[str, Any]) -> 
     assert scene.key_positions("Sheet A", scene.KEY_OF_SHEETS) == saved["sheets"]
     uvs = [round(value, 6) for each in sheet.data.uv_layers.active.uv for value in each.vector]
     assert uvs == saved["uvs"]
+
+
+def test_what_the_panels_show_is_as_it_was(saved: dict[str, Any]) -> None:
+    assert scene.settings() == scene.SETTINGS
 
 
 def test_what_was_wrapped_by_curves_is_transferred_by_curves(saved: dict[str, Any]) -> None:
@@ -95,7 +120,9 @@ def test_operators_take_all_options_that_they_had(saved: dict[str, Any]) -> None
     assert gone == {}
 
 
-def test_it_is_disabled_and_enabled() -> None:
+def test_it_is_disabled_and_enabled(quitting: dict[str, bool]) -> None:
+    bpy.ops.wm.save_userpref()
+    quitting["saves"] = False  # Blender forgets the preferences of what is disabled
     bpy.ops.preferences.addon_disable(module=scene.MODULE)
     assert not scene.is_enabled() and not [name for name in dir(bpy.types) if name.startswith("AUTHALIC_")]
     bpy.ops.preferences.addon_enable(module=scene.MODULE)

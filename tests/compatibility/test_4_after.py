@@ -11,6 +11,8 @@ import scene
 def test_the_new_version_is_enabled_at_the_start(started_with: dict[str, Any]) -> None:
     assert scene.MODULE in started_with["addons"]
     assert f'version = "{os.environ["AUTHALIC_VERSION"]}"' in scene.manifest()
+    before = scene.read_facts()["preferences"]
+    assert before is None or scene.values_of_preferences() == before
 
 
 def test_it_opens_what_it_has_saved() -> None:

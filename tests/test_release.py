@@ -313,6 +313,14 @@ def test_the_licenses_are_gathered_for_all_platforms_that_have_wheels():
     assert set(gathered) == {platform.target for platform in platforms.PLATFORMS.values()}
 
 
+def test_our_own_crate_is_not_among_third_parties():
+    ours = "\n## MIT License\n\n- authalic 0.2.0\n\n```text\n\nOurs  \n\n```\n"
+    theirs = "\n## MIT License\n\n- authalic 0.2.0\n- rayon 1.0.0\n\n```text\nTheirs\n```\n"
+    assert notices._tidy(f"# Licenses\n{ours}{theirs}{ours}") == (
+        "# Licenses\n\n## MIT License\n\n- rayon 1.0.0\n\n```text\nTheirs\n```\n"
+    )
+
+
 def components(*crates: str) -> dict:
     """An SBOM of crates in a row, each of which needs the next, as "name 1.0"."""
     parts = [{"bom-ref": each, "name": each.split()[0], "version": each.split()[1]} for each in crates]

@@ -76,6 +76,7 @@ def compiled(targets: Collection[str] | None = None) -> set[tuple[str, str]]:
 
 
 def _tidy(text: str) -> str:
-    """The text without our own crate, space at the ends of lines, and empty lines at the ends of blocks."""
+    """The text without our own crate, its license, and space at the ends of lines and of blocks."""
     text = "\n".join(line.rstrip() for line in text.splitlines() if not line.startswith("- authalic "))
-    return re.sub(r"\n+```\n", "\n```\n", re.sub(r"```text\n+", "```text\n", text)).strip() + "\n"
+    text = re.sub(r"\n+```\n", "\n```\n", re.sub(r"```text\n+", "```text\n", text))
+    return of(listed(text), text)

@@ -47,6 +47,9 @@ import bench.wrap.methods
 import bench.wrap.pairs
 import changes
 import compatibility
+import cross.bits
+import cross.main
+import cross.platforms
 import debian
 import demo.figures
 import demo.measure
@@ -55,6 +58,7 @@ import fuzz.report
 import fuzz.rust
 import manual
 import pythons
+import release.platforms
 import steps
 import windows
 from environment import REQUIREMENTS
@@ -789,3 +793,65 @@ def test_a_version_that_is_not_there_is_a_row_of_the_table():
     assert set(compatibility.BLENDERS) <= {
         path.stem.removeprefix("bpy-") for path in REQUIREMENTS.glob("bpy-*.txt")
     }
+
+
+def test_bits_that_differ_are_counted_and_measured():
+    one, next_to_one = "3ff0000000000000", "3ff0000000000001"
+    here = cross.bits.read(f"   Compiling x: y\nmap: {one} {one}\nsame: {one}\ngone: {one}\n")
+    there = cross.bits.read(f"same: {one}\r\nmap: {one} {next_to_one}\nnew: {one} {one}\n")
+    assert here == {"map": (1.0, 1.0), "same": (1.0,), "gone": (1.0,)}
+    found = {each.name: each for each in cross.bits.compare(here, there)}
+    assert list(found) == ["map", "same", "gone", "new"]
+    assert (found["map"].differing, found["map"].largest) == (1, 2.0**-52)
+    assert found["same"].differing == 0 and found["same"].largest == 0
+    assert (found["gone"].differing, found["new"].differing) == (1, 2)
+    assert found["new"].largest == float("inf")
+    assert "| map | 2 | 1 | 2.2e-16 |" in cross.bits.table(list(found.values()), "elsewhere")
+    zeros = cross.bits.compare({"x": (0.0,)}, {"x": (-0.0,)})
+    assert zeros[0].differing == 1 and zeros[0].largest == 0
+
+
+def test_differences_are_summed_up_by_functions_and_results():
+    one, other = (1.0, 2.0), (1.0, 2.5)
+    here = {"function sin": one, "function exp": one, "disk": one}
+    found = cross.bits.summary(cross.bits.compare(here, {**here, "function exp": other}))
+    assert found == (
+        "the same bits in 1 of 2 functions, the others within 2e-01; the same bits in 1 of 1 results"
+    )
+    assert cross.bits.summary([]) == "no results"
+
+
+def test_libraries_that_not_everybody_has_are_noticed():
+    windows_x64 = cross.platforms.PLATFORMS["windows-x64"]
+    usual = ["python3.dll", "KERNEL32.dll", "api-ms-win-core-synch-l1-2-0.dll"]
+    strange = ["python311.dll", "libgcc_s_seh-1.dll", "libwinpthread-1.dll"]
+    assert windows_x64.strange_libraries(usual + strange) == strange
+    arm = cross.platforms.PLATFORMS["linux-arm64"]
+    assert arm.strange_libraries(["libc.so.6", "ld-linux-aarch64.so.1", "libpython3.11.so.1.0"]) == [
+        "libpython3.11.so.1.0"
+    ]
+
+
+def test_a_step_that_cannot_be_had_is_a_row_and_the_others_go_on(monkeypatch, tmp_path, capsys):
+    def missing(name, words, log):
+        raise Unavailable("cannot resolve the host\nno wine")
+
+    def failing(name, words, log):
+        output = "test result: FAILED. 2 passed; 4 failed; 0 ignored; 0 measured; 0 filtered out; 0.1s"
+        raise CommandFailed(["cargo"], 1, output)
+
+    monkeypatch.setattr(cross.main, "FOLDER", tmp_path)
+    monkeypatch.setattr(cross.main, "prepare", lambda platform, log: None)
+    monkeypatch.setattr(cross.main, "versions", lambda log: ["rustc 1.99"])
+    monkeypatch.setattr(cross.main, "STEPS", {"bits": missing, "tests": failing, "wheel": lambda *_: "built"})
+    assert cross.main.check(["windows-x64"], ["bits", "tests", "wheel"], []) == 1
+    text = (tmp_path / "table.md").read_text(encoding="utf-8")
+    assert "| windows-x64 | bits | not done: no wine |" in text and text in capsys.readouterr().out
+    assert "| windows-x64 | tests | FAILED: 2 passed, 4 failed; see windows-x64-tests.log |" in text
+    assert "| windows-x64 | wheel | built |" in text
+    assert cross.main.check(["windows-x64"], ["bits", "wheel"], []) == 0
+
+
+def test_every_platform_of_cross_has_a_wheel():
+    assert set(cross.platforms.PLATFORMS) <= set(release.platforms.PLATFORMS)
+    assert set(cross.main.STEPS) == set(cross.main.WHAT)

@@ -58,6 +58,8 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("scripts/docs", {"ruff": (), "python": PROJECT}),
     ("scripts/demo", {"ruff": (), "python": PROJECT}),
     ("scripts/compatibility", {"ruff": (), "python": PROJECT}),
+    ("scripts/cross", {"ruff": (), "python": PROJECT}),
+    ("scripts/lib/cross/*", {"ruff": (), "python": PROJECT}),
     ("scripts/fuzz", {"ruff": (), "python": PROJECT}),
     ("scripts/lib/fuzz/*", {"ruff": (), "python": PROJECT}),
     ("scripts/requirements/fuzz.txt", {}),

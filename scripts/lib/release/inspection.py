@@ -36,21 +36,34 @@ def inspect(log: Path | None = None) -> None:
 
 def problems_of_wheel(wheel: Path) -> list[str]:
     """What a wheel lacks or has too much of, a sentence each."""
+    problems = problems_of_contents(wheel)
+    paths = sorted(set(_FOREIGN_PATH.findall(_native_code(wheel))))
+    if paths:
+        problems.append(f"{wheel.name} names a folder of the machine that built it: {paths[0].decode()}")
+    return problems
+
+
+def problems_of_contents(wheel: Path) -> list[str]:
+    """The same, wherever the wheel was built."""
+    code = _native_code(wheel)
     with zipfile.ZipFile(str(wheel)) as archive:
         names = archive.namelist()
-        [native] = [name for name in names if re.search(r"/_native\.[\w.-]*(so|pyd)$", name)]
-        code = archive.read(native)
-    paths = sorted(set(_FOREIGN_PATH.findall(code)))
     info = f"authalic-{version()}.dist-info"
     wanted = [*(f"{info}/licenses/{name}" for name in _LICENSES), "authalic/py.typed"]
     problems = [f"{wheel.name} lacks {name}" for name in wanted if name not in names]
     if not any(name.startswith(f"{info}/sboms/") for name in names):
         problems.append(f"{wheel.name} has no list of its crates (SBOM)")
-    if paths:
-        problems.append(f"{wheel.name} names a folder of the machine that built it: {paths[0].decode()}")
     return problems + [
         f"{wheel.name} holds code under the LGPL: {text.decode()}" for text in _LGPL if text in code
     ]
+
+
+def _native_code(wheel: Path) -> bytes:
+    """The native module in a wheel."""
+    with zipfile.ZipFile(str(wheel)) as archive:
+        pattern = r"/_native\.[\w.-]*(so|pyd)$"
+        [native] = [name for name in archive.namelist() if re.search(pattern, name)]
+        return archive.read(native)
 
 
 def _audit(wheel: Path, tools: environment.Environment, log: Path | None) -> None:

@@ -59,7 +59,7 @@ def test_a_surface_onto_itself_is_the_identity(name, count):
     assert result.status == "converged"
 
 
-@both
+@all_pairs
 def test_noise_moves_little(pair):
     rng = np.random.default_rng(3)
     noise = 1e-12 * pairs.size(pair.source) * rng.standard_normal(pair.source.vertices.shape)

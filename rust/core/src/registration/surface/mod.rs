@@ -8,12 +8,13 @@
 //! stages: at first it smooths the way, at last it acts next to folds only.
 //!
 //! The map is stationary where neither betters it: target edges are kinks of the energy, at which vertices come to lie
-//! with a slope on either side.
+//! with a slope on either side ([`kinks`]).
 //!
 //! Cost: some fifty factorizations with two unknowns for each vertex of the source.
 
 mod density;
 mod energy;
+mod kinks;
 mod newton;
 mod problem;
 #[cfg(test)]
@@ -138,7 +139,7 @@ pub(crate) fn descend(
     let (mut map, mut status) = (map, Status::MaxIterations);
     for (k, stage) in stages.iter().enumerate() {
         energy.guard = stage.guard;
-        let mut moving = Moving { energy: &energy, motions: &motions, map };
+        let mut moving = Moving::new(&energy, &motions, map);
         if problem.start != Start::Domain && k == 0 {
             (0..SWEEPS).for_each(|_| moving.sweep(&colors));
         }

@@ -2,13 +2,16 @@
 //! Newton's method on the places of the source's vertices, by steps that fold no face.
 //!
 //! A step is a tangent vector at each vertex; the vertex walks along it straight over the target. Target edges are
-//! kinks of the energy, and a few faces near their limit would hold up a whole step: their vertices go a part of the
-//! way, their neighbors up to twice that part, and so on.
+//! kinks of the energy: a vertex that lies lowest on one stays there ([`kinks`](super::kinks)). A few faces near their
+//! limit would hold up a whole step: their vertices go a part of the way, their neighbors up to twice that part, and so
+//! on. Steps that keep little of their promise damp the next ones (D. W. Marquardt, An algorithm for least-squares
+//! estimation of nonlinear parameters, J. SIAM 11, 1963): undamped ones would magnify noise in the input two times each.
 //!
 //! Cost of a step: one factorization of two unknowns per vertex.
 
 use super::density::Expansion;
 use super::energy::SurfaceEnergy;
+use super::kinks::Course;
 use super::target::{Placed, boundary_edge};
 use crate::control::Watch;
 use crate::location::Location;
@@ -19,6 +22,14 @@ use crate::vector::Vector3;
 
 /// Shift of the Hessian's diagonal relative to itself, and to the area of a face.
 const SHIFTS: [f64; 2] = [1e-8, 1e-6];
+
+/// Parts of the decrease promised by the quadratic model below which the next step is damped more, and above which it is
+/// damped less, by a factor; the least damping that there is if any, and the most.
+const POOR: f64 = 0.25;
+const GOOD: f64 = 0.75;
+const DAMPING_FACTOR: f64 = 4.0;
+const LEAST_DAMPING: f64 = 0.1;
+const MOST_DAMPING: f64 = 1.0;
 
 /// Longest step of a vertex; the target has an area of 1.
 const LONGEST: f64 = 0.2;
@@ -68,13 +79,17 @@ pub(super) struct Moving<'a, 'p> {
     pub energy: &'a SurfaceEnergy<'p>,
     pub motions: &'a [Motion],
     pub map: Vec<Placed>,
+    /// The face that each vertex has left with its last step into another.
+    pub(super) left: Vec<Option<Face>>,
+    /// Factor of the Hessian's diagonal that is added to it.
+    damping: f64,
 }
 
 /// A direction with its slope.
 struct Direction {
     /// The unknowns of each vertex.
     unknowns: Vec<[f64; 2]>,
-    frames: Vec<[Vector3; 2]>,
+    courses: Vec<Course>,
     expansions: Vec<Expansion>,
     slope: f64,
 }
@@ -95,7 +110,12 @@ struct Trial {
     value: f64,
 }
 
-impl Moving<'_, '_> {
+impl<'a, 'p> Moving<'a, 'p> {
+    pub(super) fn new(energy: &'a SurfaceEnergy<'p>, motions: &'a [Motion], map: Vec<Placed>) -> Self {
+        let left = vec![None; map.len()];
+        Self { energy, motions, map, left, damping: 0.0 }
+    }
+
     /// One step; `None` where none lowers the energy.
     pub(super) fn step(
         &mut self,
@@ -103,9 +123,12 @@ impl Moving<'_, '_> {
         factor: &mut Factor<f64>,
         watch: &Watch<'_>,
     ) -> Result<Option<Step>, Failure> {
-        // 1. The direction
-        let direction = self.direction(analysis, factor, watch)?;
-        // 2. As much of it as lowers the energy
+        // 1. Vertices at kinks stay there, or turn into the face that they go down
+        let courses = self.courses();
+        self.turn_into(&courses);
+        // 2. The direction
+        let direction = self.direction(courses, analysis, factor, watch)?;
+        // 3. As much of it as lowers the energy
         let values = parallel::map(self.energy.areas.len(), |face| {
             self.energy.face_value(face, self.energy.corners(&self.map, face))
         });
@@ -119,13 +142,23 @@ impl Moving<'_, '_> {
                 return Err(Failure::Cancelled);
             }
             if let Some(trial) = self.trial(&direction, share, &values, &of_vertices) {
-                self.map = trial.map;
+                self.go_to(trial.map);
                 let energies = [before, trial.value];
+                self.damp((before - trial.value) / (-0.5 * direction.slope));
                 return Ok(Some(Step { energies, share, slope: direction.slope }));
             }
             share *= SHORTER;
         }
         Ok(None)
+    }
+
+    /// Damps the next steps according to the part of its promise that one has kept.
+    fn damp(&mut self, kept: f64) {
+        if kept < POOR {
+            self.damping = (DAMPING_FACTOR * self.damping).clamp(LEAST_DAMPING, MOST_DAMPING);
+        } else if kept > GOOD {
+            self.damping /= DAMPING_FACTOR;
+        }
     }
 
     fn total(&self, values: &[f64], of_vertices: &[f64]) -> f64 {
@@ -136,20 +169,21 @@ impl Moving<'_, '_> {
     /// Newton's direction.
     fn direction(
         &self,
+        courses: Vec<Course>,
         analysis: &Analysis,
         factor: &mut Factor<f64>,
         watch: &Watch<'_>,
     ) -> Result<Direction, Failure> {
         let (energy, map) = (self.energy, &self.map);
-        let frames = parallel::map(map.len(), |vertex| self.frame(vertex));
         // 1. The faces' parts, with a vertex's own in the first of its corners
         let expansions = parallel::map(energy.areas.len(), |face| {
             let vertices = energy.source.faces()[face];
             let corners = vertices.map(|vertex| &map[vertex]);
-            let mut expansion = energy.face_expansion(face, corners, vertices.map(|vertex| &frames[vertex]));
+            let mut expansion =
+                energy.face_expansion(face, corners, vertices.map(|vertex| &courses[vertex].frame));
             for (k, vertex) in vertices.into_iter().enumerate() {
                 if energy.source.vertex_corners(vertex)[0] == Face::new(face).corner(k) {
-                    let own = energy.vertex_expansion(vertex, &map[vertex], &frames[vertex]);
+                    let own = energy.vertex_expansion(vertex, &map[vertex], &courses[vertex].frame);
                     add_vertex(&mut expansion, k, &own.gradient, &own.hessian);
                 }
             }
@@ -163,7 +197,7 @@ impl Moving<'_, '_> {
                 [sum[0] + of_face[k], sum[1] + of_face[k + 1]]
             })
         });
-        let element = |face: usize| shifted(&expansions[face].hessian, energy.areas[face]);
+        let element = |face: usize| shifted(&expansions[face].hessian, energy.areas[face], self.damping);
         factor.refactor(analysis, &element, watch)?;
         // 3. Its solution, in steps of bounded length
         let mut rhs = vec![0.0; analysis.n_unknowns()];
@@ -181,7 +215,35 @@ impl Moving<'_, '_> {
         });
         let slope =
             parallel::sum(map.len(), |v| gradient[v][0] * unknowns[v][0] + gradient[v][1] * unknowns[v][1]);
-        Ok(Direction { unknowns, frames, expansions, slope })
+        Ok(Direction { unknowns, courses, expansions, slope })
+    }
+
+    /// How each vertex goes on.
+    fn courses(&self) -> Vec<Course> {
+        parallel::map(self.map.len(), |vertex| match self.motions[vertex] {
+            Motion::Free => self.energy.course(&self.map, Vertex::new(vertex)),
+            _ => Course { location: self.map[vertex].location, frame: self.frame(vertex), edge: None },
+        })
+    }
+
+    /// Sees the vertices from the faces that they go into.
+    fn turn_into(&mut self, courses: &[Course]) {
+        for (vertex, course) in courses.iter().enumerate() {
+            if course.location != self.map[vertex].location {
+                self.map[vertex] = self.energy.target.placed(course.location);
+                self.left[vertex] = None;
+            }
+        }
+    }
+
+    /// Moves the vertices, and keeps the faces that they have left.
+    fn go_to(&mut self, map: Vec<Placed>) {
+        for ((left, before), after) in self.left.iter_mut().zip(&self.map).zip(&map) {
+            if before.location.triangle != after.location.triangle {
+                *left = Some(before.location.triangle);
+            }
+        }
+        self.map = map;
     }
 
     fn n_unknowns(&self, vertex: usize) -> usize {
@@ -203,8 +265,16 @@ impl Moving<'_, '_> {
     /// A vertex after a part of its step.
     fn moved(&self, direction: &Direction, vertex: usize, share: f64) -> Placed {
         let [a, b] = direction.unknowns[vertex].map(|x| share * x);
-        let [first, second] = direction.frames[vertex];
-        self.walked(vertex, first * a + second * b, a)
+        let Course { frame: [first, second], edge, .. } = direction.courses[vertex];
+        let along = first * a + second * b;
+        let (target, placed) = (&self.energy.target, &self.map[vertex]);
+        if self.motions[vertex] != Motion::Free || along == Vector3::ZERO {
+            return self.walked(vertex, along, a);
+        }
+        target.placed(match edge {
+            Some(edge) => target.walked_along_edge(placed.location, edge, a),
+            None => target.walked_until(placed.location, along, self.left[vertex]),
+        })
     }
 
     /// A vertex after a walk along a vector, or by a distance along the boundary.
@@ -345,10 +415,11 @@ fn add_vertex(expansion: &mut Expansion, k: usize, gradient: &[f64; 2], &[xx, xy
 }
 
 /// A face's Hessian with its diagonal shifted, by one value for both unknowns of a corner.
-fn shifted(hessian: &[[f64; 6]; 6], area: f64) -> [[f64; 6]; 6] {
+fn shifted(hessian: &[[f64; 6]; 6], area: f64, damping: f64) -> [[f64; 6]; 6] {
     let mut element = *hessian;
     for k in 0..3 {
-        let shift = SHIFTS[0] * (element[2 * k][2 * k] + element[2 * k + 1][2 * k + 1]) + SHIFTS[1] * area;
+        let shift = (SHIFTS[0] + damping) * (element[2 * k][2 * k] + element[2 * k + 1][2 * k + 1])
+            + SHIFTS[1] * area;
         element[2 * k][2 * k] += shift;
         element[2 * k + 1][2 * k + 1] += shift;
     }
@@ -372,7 +443,7 @@ mod tests {
         let analysis = Analysis::new(motions.len(), faces, &dofs, Order::Sparse).unwrap();
         let mut factor = Factor::new(&analysis);
         let map = sample.start.iter().map(|&location| energy.target.placed(location)).collect();
-        let mut moving = Moving { energy, motions, map };
+        let mut moving = Moving::new(energy, motions, map);
         for _ in 0..n {
             let before = energy.value(&moving.map);
             let mut silent = Silent;

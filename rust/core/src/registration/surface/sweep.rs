@@ -19,6 +19,10 @@ use crate::parallel;
 /// Energy of a face above which its vertices are searched.
 const DISTORTED: f64 = 1.3;
 
+/// Part of the energy around it that a vertex must gain by a jump: what is less is left to Newton's steps, since which of
+/// many small jumps is taken depends on rounding.
+const LEAST_GAIN: f64 = 1e-3;
+
 /// Directions and radii of the search, the factor from radius to radius, and the turn of the directions with it.
 const DIRECTIONS: usize = 12;
 const RADII: usize = 6;
@@ -59,7 +63,10 @@ impl Moving<'_, '_> {
         for group in &colors.0 {
             let better = parallel::map(group.len(), |k| self.best_nearby(group[k]));
             for (&vertex, better) in group.iter().zip(better) {
-                self.map[vertex] = better.unwrap_or(self.map[vertex]);
+                if let Some(better) = better {
+                    self.map[vertex] = better;
+                    self.left[vertex] = None;
+                }
             }
         }
     }
@@ -71,7 +78,7 @@ impl Moving<'_, '_> {
         }
         let (energy, placed) = (self.energy, &self.map[vertex]);
         let frame = self.frame(vertex.index());
-        let mut least = energy.star_value(&self.map, vertex, placed, f64::INFINITY);
+        let mut least = (1.0 - LEAST_GAIN) * energy.star_value(&self.map, vertex, placed, f64::INFINITY);
         let mut best = None;
         let mut radius = self.first_radius(vertex);
         for ring in 0..RADII {
@@ -161,7 +168,7 @@ mod tests {
             let mut motions = vec![Motion::Held; right.len()];
             motions[vertex] = Motion::Free;
             let colors = Colors::new(&sample.source, &motions);
-            let mut moving = Moving { energy: &energy, motions: &motions, map: aside.clone() };
+            let mut moving = Moving::new(&energy, &motions, aside.clone());
             (0..3).for_each(|_| moving.sweep(&colors));
             let away = |map: &[Placed]| map[vertex].point.distance(right[vertex].point);
             assert!(away(&moving.map) < 0.5 * away(&aside), "{vertex}");
@@ -177,7 +184,7 @@ mod tests {
         let energy = SurfaceEnergy::new(&problem, GUARD);
         let map: Vec<Placed> = sample.start.iter().map(|&location| energy.target.placed(location)).collect();
         let motions = vec![Motion::Free; map.len()];
-        let mut moving = Moving { energy: &energy, motions: &motions, map: map.clone() };
+        let mut moving = Moving::new(&energy, &motions, map.clone());
         moving.sweep(&Colors::new(&sample.source, &motions));
         assert_eq!(moving.map, map);
     }

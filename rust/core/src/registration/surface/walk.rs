@@ -6,7 +6,7 @@
 
 use super::target::{Target, boundary_edge};
 use crate::location::Location;
-use crate::mesh::Corner;
+use crate::mesh::{Corner, Face};
 use crate::vector::Vector3;
 
 /// Most edges that a walk crosses.
@@ -15,6 +15,11 @@ const MOST_EDGES: usize = 10_000;
 impl Target<'_> {
     /// The place reached by a walk along a vector in the plane of the face it starts in; the boundary ends it.
     pub(super) fn walked(&self, start: Location, along: Vector3) -> Location {
+        self.walked_until(start, along, None)
+    }
+
+    /// The same, where the walk stops on the edge of the face `until`.
+    pub(super) fn walked_until(&self, start: Location, along: Vector3, until: Option<Face>) -> Location {
         let (mut place, mut left) = (start, along);
         for _ in 0..MOST_EDGES {
             let change = self.coordinates(place.triangle, left);
@@ -31,6 +36,9 @@ impl Target<'_> {
             // 2. Into the next face
             let corner = place.triangle.corner(edge);
             let Some(across) = self.mesh().opposite(corner) else { break };
+            if until == Some(across.face()) {
+                break;
+            }
             left = self.unfolded(corner, across, left * (1.0 - share));
             place = self.seen_from(&place, corner, across);
         }
@@ -50,13 +58,28 @@ impl Target<'_> {
     }
 
     /// A place on the edge opposite to a corner, in the face across.
-    fn seen_from(&self, place: &Location, corner: Corner, across: Corner) -> Location {
+    pub(super) fn seen_from(&self, place: &Location, corner: Corner, across: Corner) -> Location {
         let mut barycentric = [0.0; 3];
         // the faces run along their common edge in opposite directions
         let (k, l) = (corner.place(), across.place());
         barycentric[(l + 1) % 3] = place.barycentric[(k + 2) % 3];
         barycentric[(l + 2) % 3] = place.barycentric[(k + 1) % 3];
         Location { triangle: across.face(), barycentric }
+    }
+
+    /// The place reached by a walk along the edge opposite to a corner, which ends at its ends.
+    pub(super) fn walked_along_edge(&self, start: Location, edge: Corner, distance: f64) -> Location {
+        let [from, to] = edge.half_edge(self.faces()).map(|vertex| self.points[vertex]);
+        let t = start.barycentric[(edge.place() + 2) % 3] + distance / from.distance(to);
+        Location::on_edge(edge, t.clamp(0.0, 1.0))
+    }
+
+    /// The unit vectors along the edge opposite to a corner, and from it into the face.
+    pub(super) fn edge_frame(&self, edge: Corner) -> [Vector3; 2] {
+        let [from, to] = edge.half_edge(self.faces()).map(|vertex| self.points[vertex]);
+        let along = (to - from).normalized();
+        let apex = self.points[edge.vertex(self.faces())] - from;
+        [along, (apex - along * apex.dot(along)).normalized()]
     }
 
     /// The place reached along the boundary, the surface on the left of travel; a negative distance goes back.
@@ -159,6 +182,41 @@ mod tests {
             }
         }
         assert!(n_inside > 100);
+    }
+
+    #[test]
+    fn a_walk_stops_on_the_edge_of_a_face_that_it_must_not_enter() {
+        let (mesh, in_domain) = cube();
+        let target = Target::new(&mesh, &in_domain, CanonicalDomain::Sphere);
+        let along = target.frame(NEAR_TOP.triangle)[0] * side();
+        let end = target.walked(NEAR_TOP, along);
+        assert!(end.triangle != NEAR_TOP.triangle);
+        let stopped = target.walked_until(NEAR_TOP, along, Some(end.triangle));
+        let edge = (0..3).find(|&k| stopped.barycentric[k] == 0.0).unwrap();
+        let across = mesh.opposite(stopped.triangle.corner(edge)).unwrap();
+        assert_eq!(across.face(), end.triangle);
+        // the face that it starts in does not matter
+        assert_eq!(target.walked_until(NEAR_TOP, along, Some(NEAR_TOP.triangle)), end);
+    }
+
+    #[test]
+    fn a_walk_along_an_edge_ends_at_its_ends() {
+        let (mesh, in_domain) = cube();
+        let target = Target::new(&mesh, &in_domain, CanonicalDomain::Sphere);
+        for corner in Corner::all(mesh.n_faces()) {
+            let [from, to] = corner.half_edge(mesh.faces()).map(|vertex| target.points[vertex]);
+            let start = Location::on_edge(corner, 0.25);
+            let there = target.walked_along_edge(start, corner, 0.5 * from.distance(to));
+            assert!(there.point_on(&target.points, mesh.faces()).distance(from * 0.25 + to * 0.75) < 1e-15);
+            for (distance, end) in [(9.0, to), (-9.0, from)] {
+                let there = target.walked_along_edge(start, corner, distance);
+                assert_eq!(there.point_on(&target.points, mesh.faces()), end);
+                assert_eq!(there.barycentric.iter().filter(|&&x| x == 0.0).count(), 2);
+            }
+            let [along, inward] = target.edge_frame(corner);
+            assert!((along.dot(inward)).abs() < 1e-15 && along.distance((to - from).normalized()) < 1e-15);
+            assert!(inward.dot(target.points[corner.vertex(mesh.faces())] - from) > 0.0);
+        }
     }
 
     #[test]

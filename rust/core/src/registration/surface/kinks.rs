@@ -35,49 +35,43 @@ impl SurfaceEnergy<'_> {
     /// How a vertex goes on that is free to move.
     pub(super) fn course(&self, map: &[Placed], vertex: Vertex) -> Course {
         let location = map[vertex].location;
-        let on_edges = (0..3).filter(|&k| location.barycentric[k] == 0.0);
-        match on_edges.clone().count() {
-            0 => self.into_face(location),
-            1 => {
-                let edge = on_edges.last().expect("one edge");
-                self.from_edge(map, vertex, location.triangle.corner(edge))
-            }
-            _ => self.from_vertex(map, vertex),
+        let edges: Vec<usize> = (0..3).filter(|&k| location.barycentric[k] == 0.0).collect();
+        match edges[..] {
+            [] => self.course_in_face(location),
+            [edge] => self.course_at_edge(map, vertex, location.triangle.corner(edge)),
+            _ => self.course_at_vertex(map, vertex),
         }
     }
 
     /// Freely over the face.
-    fn into_face(&self, location: Location) -> Course {
+    fn course_in_face(&self, location: Location) -> Course {
         Course { location, frame: self.target.frame(location.triangle), edge: None }
     }
 
     /// Along an edge.
-    fn along(&self, location: Location, edge: Corner) -> Course {
+    fn course_along(&self, location: Location, edge: Corner) -> Course {
         let [from, to] = edge.half_edge(self.target.faces()).map(|vertex| self.target.points[vertex]);
         Course { location, frame: [(to - from).normalized(), Vector3::ZERO], edge: Some(edge) }
     }
 
     /// Into the face on one of the sides of an edge, or along it.
-    fn from_edge(&self, map: &[Placed], vertex: Vertex, edge: Corner) -> Course {
+    fn course_at_edge(&self, map: &[Placed], vertex: Vertex, edge: Corner) -> Course {
         let here = map[vertex].location;
         let across = self.target.mesh().opposite(edge);
         let seen_across = across.map(|across| self.target.seen_from(&here, edge, across));
-        let slope = |side: Corner, location: Location| {
-            let [along, inward] = self.target.edge_frame(side);
-            let [_, slope] = self.slopes(map, vertex, location, [along, inward]);
-            slope
-        };
+        let slope =
+            |side: Corner, location| self.slopes(map, vertex, location, self.target.edge_frame(side))[1];
         let ours = slope(edge, here);
         let theirs = across.zip(seen_across).map_or(0.0, |(across, location)| slope(across, location));
         match seen_across {
-            Some(location) if theirs < 0.0 && theirs < ours => self.into_face(location),
-            _ if ours < 0.0 => self.into_face(here),
-            _ => self.along(here, edge),
+            Some(location) if theirs < 0.0 && theirs < ours => self.course_in_face(location),
+            _ if ours < 0.0 => self.course_in_face(here),
+            _ => self.course_along(here, edge),
         }
     }
 
     /// Into a face around a vertex of the target or along an edge there, or nowhere.
-    fn from_vertex(&self, map: &[Placed], vertex: Vertex) -> Course {
+    fn course_at_vertex(&self, map: &[Placed], vertex: Vertex) -> Course {
         let here = map[vertex].location;
         let at = (0..3).find(|&k| here.barycentric[k] != 0.0).unwrap_or(0);
         let center = self.target.faces()[here.triangle][at];
@@ -100,16 +94,16 @@ impl SurfaceEnergy<'_> {
         let [first, second] = [corner.next().next(), corner.next()];
         let [along, inward] = self.target.edge_frame(first);
         let [x, y] = self.slopes(map, vertex, location, [along, inward]);
-        let course = self.along(location, second);
+        let course = self.course_along(location, second);
         let other = course.frame[0] * -1.0;
         let mut ways = vec![
-            Way { course: self.along(location, first), slope: x },
+            Way { course: self.course_along(location, first), slope: x },
             Way { course, slope: x * other.dot(along) + y * other.dot(inward) },
         ];
         // the steepest descent lies to the left of the first edge and to the right of the second
         let down = along * -x - inward * y;
         if y < 0.0 && down.cross(other).dot(along.cross(inward)) > 0.0 {
-            ways.push(Way { course: self.into_face(location), slope: -x.hypot(y) });
+            ways.push(Way { course: self.course_in_face(location), slope: -x.hypot(y) });
         }
         ways
     }

@@ -30,7 +30,7 @@ def narrow(wheel: Path, crates: Crates, target: Path) -> Path:
         if name.endswith(f"/licenses/{notices.NAME}"):
             files[name] = notices.of(crates, data.decode()).encode()
         elif _SBOM in name:
-            files[name] = json.dumps(narrowed(json.loads(data), crates), indent=2).encode()
+            files[name] = json.dumps(narrowed(json.loads(data), crates), separators=(",", ":")).encode()
     [record] = [name for name in files if name.endswith(_RECORD)]
     files[record] = "".join(f"{_line(name, files[name], record)}\n" for name in files).encode()
     with zipfile.ZipFile(target, "w") as archive:

@@ -15,6 +15,7 @@ ADDON = ROOT / "addon"
 
 # The rooms of the crate, lowest first: a room may use those of lower rows only, and itself.
 CORE_ROOMS = (
+    {"clock"},
     {"vector", "error", "control", "parallel", "sets", "memory"},
     {"arrays"},
     {"record"},

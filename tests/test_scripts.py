@@ -60,6 +60,7 @@ import manual
 import pythons
 import release.platforms
 import steps
+import web.shapes
 import windows
 from environment import REQUIREMENTS
 from shell import ROOT, CommandFailed, Unavailable, run
@@ -778,6 +779,32 @@ def test_every_target_of_a_fuzzer_has_its_file():
     assert {each["name"] for each in manifest["bin"]} == set(fuzz.rust.TARGETS)
     for name in fuzz.python.TARGETS:
         assert (ROOT / "scripts" / "lib" / "fuzz" / f"of_{name}.py").exists()
+
+
+def test_the_page_is_built_of_the_crates_that_the_package_is_built_of():
+    """Both lock files name the same versions, so that the page computes what the package does."""
+
+    def versions(lock):
+        found = {}
+        for package in tomllib.loads((ROOT / lock).read_text(encoding="utf-8"))["package"]:
+            found.setdefault(package["name"], set()).add(package["version"])
+        return found
+
+    of_package, of_page = versions("Cargo.lock"), versions("rust/web/Cargo.lock")
+    common = (of_package.keys() & of_page.keys()) - {"hashbrown"}  # of bindgen alone
+    assert {"authalic", "faer", "ndarray", "sprs"} <= common
+    assert {name: of_page[name] for name in common} == {name: of_package[name] for name in common}
+
+
+def test_the_shapes_of_the_page_are_closed_surfaces():
+    genus = {"cow": 0, "knot": 1, "frame": 5}
+    shapes = {"cow": web.shapes.cow(), "knot": web.shapes.knot()[:2], "frame": web.shapes.frame()}
+    for name, (vertices, polygons) in shapes.items():
+        faces = np.concatenate([polygons[:, [0, k, k + 1]] for k in range(1, polygons.shape[1] - 1)])
+        [piece] = authalic.cut(vertices, faces)
+        assert piece.is_closed and piece.genus == genus[name]
+        [a, b, c] = np.moveaxis(vertices[faces], 1, 0)
+        assert np.einsum("ij,ij", a, np.cross(b, c)) > 0, f"{name} is inside out"
 
 
 def test_a_version_that_is_not_there_is_a_row_of_the_table():

@@ -15,7 +15,7 @@ Selection = Dict[str, Tuple[str, ...]]
 BLENDER = ("blender-4.2", "blender-5")
 INSTALLED = (*BLENDER, "window")
 BUILT = ("wheel", "types", "docstrings", "python", "extension", "docs", *INSTALLED)
-RUST = ("rustfmt", "clippy", "rust", "rustdoc")
+RUST = ("rustfmt", "clippy", "rust", "web", "rustdoc")
 EVERYTHING = ("environments", *RUST, "ruff", "workflows", *BUILT)
 STRUCTURE = ("tests/test_architecture.py", "tests/test_docs.py")
 PROJECT = (*STRUCTURE, "tests/test_scripts.py")
@@ -30,6 +30,8 @@ def _whole(*steps: str) -> Selection:
 # The first pattern that fits a file counts (`*` also stands for slashes); {file} is the file itself.
 _RULES: tuple[tuple[str, Selection], ...] = (
     ("rust/fuzz/*", {}),
+    ("rust/web/page/*", {"python": STRUCTURE}),
+    ("rust/web/*", {"web": (), "python": STRUCTURE}),
     ("rust/core/tests/*", _whole("rustfmt", "clippy", "rust")),
     ("rust/core/*", _whole(*EVERYTHING)),
     ("rust/python/authalic/*", _whole("ruff", *BUILT)),
@@ -43,6 +45,7 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("tests/blender/*", _whole("ruff", "types", *BLENDER)),
     ("tests/data/*", {"python": ("tests/api",), **_whole(*BLENDER)}),
     ("tests/compatibility/*", {"ruff": (), "python": STRUCTURE}),
+    ("tests/web/*", {"ruff": (), "python": STRUCTURE}),
     ("tests/gui/driver.py", _whole("ruff", "types", "window")),
     ("tests/gui/start.py", _whole("ruff", "types", "window")),
     ("tests/gui/*.py", {"ruff": (), "types": (), "window": ("{file}",)}),
@@ -62,6 +65,9 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("scripts/lib/cross/*", {"ruff": (), "python": PROJECT}),
     ("scripts/fuzz", {"ruff": (), "python": PROJECT}),
     ("scripts/lib/fuzz/*", {"ruff": (), "python": PROJECT}),
+    ("scripts/site", {"ruff": (), "python": PROJECT}),
+    ("scripts/lib/web/*", {"ruff": (), "python": PROJECT}),
+    ("scripts/requirements/web.txt", {}),
     ("scripts/requirements/fuzz.txt", {}),
     ("scripts/lib/compatibility.py", {"ruff": (), "python": PROJECT}),
     ("scripts/release", {"ruff": (), "python": PROJECT}),

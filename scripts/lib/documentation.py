@@ -22,12 +22,16 @@ _ALSO = {
 """What pages are made of or link to outside docs/, and its name in the copy; docs/conf.py turns the links."""
 
 
-def build(wheel: Path, log: Path | None = None) -> None:
-    """Makes all pages anew; every warning is an error. Nothing comes from the network but the environment."""
+def build(wheel: Path, log: Path | None = None, with_page: bool = False) -> None:
+    """Makes all pages anew; every warning is an error. Nothing comes from the network but the environment.
+
+    `with_page` links to the page in try/ that runs the core in a browser, which is another's to make.
+    """
     place = environment.docs()
     distribution.install_wheel(wheel, place, log)
     _copy_sources()
     sphinx = [place.python, "-m", "sphinx", "--builder", "html", "--doctree-dir", _CACHE]
+    sphinx += ["--tag", "page"] if with_page else []
     run([*sphinx, "--fail-on-warning", "--quiet", _SOURCE, PAGES], log=log)
 
 

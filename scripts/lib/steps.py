@@ -22,7 +22,7 @@ CARGO_OPTIONS = ("--locked", "--release", "--workspace", "--features", "metis")
 """The wheel's profile and features everywhere: the tests run real solves, and no crate is built twice."""
 _WORKFLOWS = ROOT / ".github" / "workflows"
 _DOCSTRINGS = "tests/test_docstrings.py"
-_NOT_OF_THE_PACKAGE = ("tests/blender", "tests/compatibility", "tests/gui", _DOCSTRINGS)
+_NOT_OF_THE_PACKAGE = ("tests/blender", "tests/compatibility", "tests/gui", "tests/web", _DOCSTRINGS)
 _PYTHON_TESTS = ("tests", *(f"--ignore={place}" for place in _NOT_OF_THE_PACKAGE))
 _BLENDER_TESTS = ("tests/blender",)
 _SIDE_BY_SIDE = ("--numprocesses=2", "--dist=worksteal")
@@ -106,6 +106,20 @@ def check_clippy(log: Path) -> Count:
 def test_rust(log: Path) -> Count:
     try:
         output = run(["cargo", "test", *CARGO_OPTIONS, "--no-fail-fast"], log=log)
+    except CommandFailed as failure:
+        raise TestsFailed(count_cargo(failure.output), str(failure), failure.output) from failure
+    return count_cargo(output)
+
+
+def test_web(log: Path) -> Count:
+    """Formatting, lints and tests of the crate of the page, in its own workspace."""
+    manifest = ("--manifest-path", ROOT / "rust" / "web" / "Cargo.toml")
+    run(["cargo", "fmt", "--all", "--check", *manifest], log=log)
+    variables = {"CARGO_TARGET_DIR": str(ROOT / "target")}
+    options = ("--locked", "--release", *manifest)
+    run(["cargo", "clippy", *options, "--all-targets", "--", "-D", "warnings"], variables, log)
+    try:
+        output = run(["cargo", "test", *options], variables, log)
     except CommandFailed as failure:
         raise TestsFailed(count_cargo(failure.output), str(failure), failure.output) from failure
     return count_cargo(output)
@@ -197,6 +211,7 @@ STEPS = (
     Step("rustfmt", "formatting of the Rust code", check_rust_format, "first"),
     Step("clippy", "lints of the Rust code", check_clippy, "first"),
     Step("rust", "tests of the Rust crates", test_rust),
+    Step("web", "format, lints and tests of the crate of the page that runs the core", test_web),
     Step("rustdoc", "documentation of the Rust crates", check_rust_docs, "documentation"),
     Step("ruff", "formatting and lints of the Python code", check_python_style, "documentation"),
     Step("workflows", "lints of the workflows", check_workflows, "documentation"),

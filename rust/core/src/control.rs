@@ -3,9 +3,11 @@
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use ndarray::Array2;
+
+use crate::clock::Instant;
 
 /// Listens to a run and may end it.
 ///

@@ -108,6 +108,10 @@
 //! Only broken input and failed numerics are errors; they name the elements at fault as data ([`Error`]). A run that
 //! stops early returns its best map with a [`Status`]. Results do not depend on the number of threads.
 //!
+//! # WebAssembly
+//!
+//! The crate works on `wasm32-unknown-unknown`, on one thread. There is no clock: all seconds are 0.
+//!
 //! # Feature flags
 //!
 //! None is on by default.
@@ -118,6 +122,7 @@
 
 mod alignment;
 mod arrays;
+mod clock;
 mod codomain;
 mod control;
 mod disk;

@@ -44,9 +44,12 @@ fn is_sharing() -> bool {
     rayon::current_thread_index().is_some() && !IS_ALONE.get()
 }
 
-/// The threads of this process; `None` where they cannot be had right now. The results are the same without
-/// them.
+/// The threads of this process; `None` where they cannot be had right now, as never in WebAssembly. The results
+/// are the same without them.
 fn threads() -> Option<Arc<ThreadPool>> {
+    if cfg!(target_family = "wasm") {
+        return None;
+    }
     // a fork may have copied the lock while it was held, so never wait for it
     let mut pool = POOL.try_lock().ok()?;
     let (process, wanted) = (std::process::id(), WANTED.load(Ordering::Relaxed));

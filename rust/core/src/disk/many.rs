@@ -6,9 +6,10 @@
 //! [`disk_map`] makes of its surface, bit for bit.
 
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::{DiskMap, DiskMapOptions, disk_map};
+use crate::clock::Instant;
 use crate::control::{Observer, Phase};
 use crate::error::Error;
 use crate::mesh::Surface;

@@ -2,7 +2,6 @@
 //! Computes a layout: tries choices of vertices for the singular points until one leaves no folds.
 
 use std::marker::PhantomData;
-use std::time::Instant;
 
 use super::certificate::{Precision, nearly_folded};
 use super::chart::{Chart, Point};
@@ -16,6 +15,7 @@ use super::singular_points::{SphereMesh, place_singular_points};
 use super::sphere_faces::SphereFaces;
 use super::unfolding::unfold;
 use crate::arrays::from_rows;
+use crate::clock::Instant;
 use crate::control::{Observer, Phase, Status, Watch};
 use crate::distortion::folded_in_plane;
 use crate::error::{Elements, Error, NumericsError};

@@ -10,11 +10,10 @@
 
 mod islands;
 
-use std::time::Instant;
-
 use ndarray::{Array2, ArrayView2};
 
 use crate::arrays::from_rows;
+use crate::clock::Instant;
 use crate::control::{Observer, Phase, Status};
 use crate::error::Error;
 use crate::mesh::{Face, Surface, Vertex};

@@ -12,7 +12,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.remote.command import Command
 from selenium.webdriver.support.ui import WebDriverWait
 
-SECONDS = 300
+SECONDS = 600
 _DROP = """
 const data = new DataTransfer();
 data.items.add(new File([arguments[0]], arguments[1]));

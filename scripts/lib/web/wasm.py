@@ -61,8 +61,8 @@ def _in_debian(words: tuple[object, ...], variables: dict[str, str], log: Path) 
         **{"CARGO_HOME": str(_CARGO_HOME), "CARGO_NET_OFFLINE": "true"},
         "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER": "wasm-ld",
     }
-    _BUILT.mkdir(parents=True, exist_ok=True)
-    places = [ROOT / "rust", _BUILT, _CARGO_HOME / "registry"]
+    # all of the project, because crates take their edition from its Cargo.toml
+    places = [ROOT, _CARGO_HOME / "registry"]
     return system.command(words, log, places, {**variables, **own})
 
 

@@ -61,7 +61,8 @@ pub(super) fn missed(
 const EVEN_ENOUGH: f64 = 0.01;
 
 /// The status of a registration. Areas alone: converged if all landmarks met and the areas are even, else that of the
-/// descent; no better than the statuses of the two maps. Between the surfaces: that of the descent.
+/// descent; no better than the statuses of the two maps. Between the surfaces: that of the descent; stalled if faces are
+/// folded, as where the target lies in the disk as a strip so thin that the boundary cannot be carried onto its own.
 pub(super) fn verdict(
     energy: Energy,
     descent: Status,
@@ -70,9 +71,11 @@ pub(super) fn verdict(
     figures: [&Distortion; 2],
 ) -> Status {
     let is_even = figures.iter().all(|figures| figures.area_ratio_std <= EVEN_ENOUGH);
+    let is_folded = figures.iter().any(|figures| !figures.folded.is_empty());
     match descent {
         Status::Cancelled => Status::Cancelled,
         _ if !missed.is_empty() => Status::LandmarksMissed,
+        descent if energy == Energy::Surface && is_folded => worst([descent, Status::Stalled]),
         descent if energy == Energy::Surface => descent,
         _ if is_even => worst([Status::Converged, maps[0], maps[1]]),
         descent => worst([descent, maps[0], maps[1]]),
@@ -88,4 +91,29 @@ pub(super) fn worst<const N: usize>(statuses: [Status; N]) -> Status {
         _ => 0,
     };
     statuses.into_iter().max_by_key(rank).unwrap_or(Status::Converged)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distortion::{Image, measure};
+    use crate::mesh::TriangleMesh;
+
+    #[test]
+    fn a_registration_with_folded_faces_has_not_converged() {
+        let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let mesh = TriangleMesh::new(&vertices, &[[0, 1, 2], [0, 2, 3]]).unwrap();
+        let sound = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let folded = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.9, 0.1]];
+        let [sound, folded] = [&sound, &folded]
+            .map(|map| measure(mesh.points(), mesh.faces(), Image::Plane(map), mesh.face_areas()).unwrap());
+        let of = |descent, missed: &[usize], source| {
+            verdict(Energy::Surface, descent, [Status::Converged; 2], missed, [source, &sound])
+        };
+        assert_eq!(of(Status::Converged, &[], &sound), Status::Converged);
+        assert_eq!(of(Status::Converged, &[], &folded), Status::Stalled);
+        assert_eq!(of(Status::MaxIterations, &[], &folded), Status::Stalled);
+        assert_eq!(of(Status::Converged, &[0], &folded), Status::LandmarksMissed);
+        assert_eq!(of(Status::Cancelled, &[], &folded), Status::Cancelled);
+    }
 }

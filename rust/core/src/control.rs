@@ -88,6 +88,10 @@ impl Observer for Rising<'_> {
         self.is_cancelled = self.is_cancelled || !self.whole.progress(self.highest, message);
         !self.is_cancelled
     }
+
+    fn preview(&mut self, positions: &dyn Fn() -> Array2<f64>) {
+        self.whole.preview(positions);
+    }
 }
 
 /// Time between two questions of a long step to the observer.
@@ -252,6 +256,26 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_fraction_that_would_fall_stays_and_previews_pass() {
+        struct Heard(Vec<f64>, usize);
+        impl Observer for Heard {
+            fn progress(&mut self, fraction: f64, _: &str) -> bool {
+                self.0.push(fraction);
+                fraction < 0.8
+            }
+            fn preview(&mut self, positions: &dyn Fn() -> Array2<f64>) {
+                self.1 += positions().nrows();
+            }
+        }
+        let mut heard = Heard(Vec::new(), 0);
+        let mut rising = Rising::new(&mut heard);
+        let answers = [0.2, 0.6, 0.1, 0.8, 0.3].map(|fraction| rising.progress(fraction, ""));
+        rising.preview(&|| Array2::zeros((7, 3)));
+        assert_eq!(answers, [true, true, true, false, false]);
+        assert_eq!((heard.0, heard.1), (vec![0.2, 0.6, 0.6, 0.8], 7));
+    }
 
     #[test]
     fn a_watch_asks_now_and_then_and_stays_cancelled() {

@@ -23,7 +23,7 @@ use super::verdict::{MISSED, located, missed, verdict, worst};
 use crate::alignment::rotation::{best_rotation, rotate};
 use crate::arrays::{from_vectors, vectors};
 use crate::codomain::CanonicalDomain;
-use crate::control::{History, Observer, Phase, Status, Watch};
+use crate::control::{History, Observer, Phase, Rising, Status, Watch};
 use crate::distortion::{Image, folded_on_sphere, measure};
 use crate::error::{Error, Side};
 use crate::location::{Location, Locator};
@@ -87,6 +87,8 @@ pub fn register_spheres(
             register_spheres,
         );
     }
+    // where coarse meshes are of no use, the whole surfaces begin anew
+    let observer: &mut dyn Observer = &mut Rising::new(observer);
     let mut history = History::start();
     // 1. Refuse what cannot be registered before any work
     let (source, target) = meshes(source_surface, target_surface)?;

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Callable, Sequence
 
 from cross import bits, wheel
-from cross.machine import cargo, prepare, versions
-from cross.platforms import PLATFORMS, Platform
-from shell import OUT, CommandFailed, Unavailable, run, say, tail
+from cross.machine import cargo, prepare, run_inside, versions
+from cross.platforms import NATIVE, PLATFORMS, Platform
+from shell import OUT, CommandFailed, Unavailable, say, tail
 from steps import count_cargo
 
 FOLDER = OUT / "cross"
@@ -31,8 +31,8 @@ class Row:
 
 
 def compare_bits(name: str, words: Sequence[str], log: Path) -> str:
-    """Runs the example on the platform, and on this machine by its own compiler."""
-    here = bits.read(run(["cargo", "run", *_EXAMPLE], log=log))
+    """Runs the example on the platform and here, by one compiler: the standard library changes too."""
+    here = bits.read(run_inside(["cargo", "run", *_EXAMPLE, "--target", NATIVE], log))
     there = bits.read(cargo(PLATFORMS[name], ["run", *_EXAMPLE], log))
     differences = bits.compare(here, there)
     text = bits.table(differences, name)

@@ -63,3 +63,5 @@ PLATFORMS = {
     ),
 }
 """By Blender's names."""
+NATIVE = "x86_64-unknown-linux-gnu"
+"""The compiler's name of this machine, the only one that can do this."""

@@ -181,3 +181,78 @@ fn covered(layout: &Layout) -> f64 {
     let corners = layout.faces.iter().map(|face| face.map(|point| layout.uv[point as usize]));
     corners.map(|face| crate::figures::signed_area(face).abs()).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use authalic::Silent;
+
+    use super::*;
+
+    /// A box of six quads, twice as high as wide.
+    const BOX: &str = "\
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 2
+v 1 0 2
+v 1 1 2
+v 0 1 2
+vn 0 0 1
+g sides
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+";
+
+    fn wishes(preset: Preset) -> Wishes {
+        Wishes { keep_seams: false, target: 1.4, preset }
+    }
+
+    #[test]
+    fn the_file_that_is_written_has_the_uvs_of_the_figures() {
+        let mesh = Mesh::of_file(ObjFile::read(BOX).unwrap()).unwrap();
+        assert!(mesh.given().is_none(), "the file has no UVs");
+        let unwrapped = mesh.unwrapped(&wishes(Preset::Even), &mut Silent).unwrap();
+        let figures = unwrapped.measured.figures;
+        assert!(figures.area_error < 0.01 && figures.flipped == 0);
+        assert!((0.1..=1.0).contains(&unwrapped.packed));
+
+        let text = mesh.written(&unwrapped.layout);
+        assert!(text.contains("vn 0 0 1\ng sides\nvt "));
+        let again = Mesh::of_file(ObjFile::read(&text).unwrap()).unwrap();
+        assert_eq!(again.surface.vertices(), mesh.surface.vertices());
+        let given = again.given().unwrap().figures;
+        assert_eq!(given.islands, figures.islands);
+        assert!((given.area_error - figures.area_error).abs() < 1e-9);
+        assert!((given.shear - figures.shear).abs() < 1e-9);
+    }
+
+    #[test]
+    fn seams_of_a_file_are_kept_and_softer_maps_have_better_shapes() {
+        let mesh = Mesh::of_file(ObjFile::read(BOX).unwrap()).unwrap();
+        let even = mesh.unwrapped(&wishes(Preset::Even), &mut Silent).unwrap();
+        let file = ObjFile::read(&mesh.written(&even.layout)).unwrap();
+        let with_uv = Mesh::of_file(file).unwrap();
+        let kept = Wishes { keep_seams: true, ..wishes(Preset::Soft) };
+        let soft = with_uv.unwrapped(&kept, &mut Silent).unwrap();
+        assert_eq!(soft.layout.islands, even.layout.islands);
+        assert!(soft.measured.figures.shear <= even.measured.figures.shear + 1e-9);
+        assert!(soft.layout.uv.iter().flatten().all(|x| (0.0..=1.0).contains(x)));
+    }
+
+    #[test]
+    fn a_repair_mends_what_a_problem_says_that_it_mends() {
+        let file = ObjFile::read(&format!("{BOX}f 1 1 7\n")).unwrap();
+        let problem = Mesh::of_file(file.clone()).unwrap_err();
+        assert_eq!((problem.kind().as_str(), problem.is_mendable()), ("repeated_vertex", true));
+        let (mesh, report) = Mesh::repaired(&file).unwrap();
+        assert!(report.contains("removed 1 face without area"), "{report}");
+        let unwrapped = mesh.unwrapped(&wishes(Preset::Even), &mut Silent).unwrap();
+        assert_eq!(ObjFile::read(&mesh.written(&unwrapped.layout)).unwrap().triangles().len(), 12);
+        assert!(!Mesh::of_file(ObjFile::read("").unwrap()).unwrap_err().is_mendable());
+    }
+}

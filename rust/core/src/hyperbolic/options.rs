@@ -103,7 +103,7 @@ impl HyperbolicOptions<'_> {
 
     /// The energy of a face between the surfaces.
     pub(super) fn face_energy(&self) -> FaceEnergy {
-        FaceEnergy { area_weight: self.area_weight, angle_weight: self.angle_weight }
+        FaceEnergy { area_weight: self.area_weight, angle_weight: self.angle_weight, both_ways: false }
     }
 
     /// Refuses what only the energy between the surfaces weighs.

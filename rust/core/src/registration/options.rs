@@ -149,7 +149,11 @@ impl RegistrationOptions<'_> {
 
     /// The energy of a face between the surfaces.
     pub(super) fn face_energy(&self) -> FaceEnergy {
-        FaceEnergy { area_weight: self.area_weight, angle_weight: self.angle_weight.unwrap_or(1.0) }
+        FaceEnergy {
+            area_weight: self.area_weight,
+            angle_weight: self.angle_weight.unwrap_or(1.0),
+            both_ways: false,
+        }
     }
 
     /// How strongly a pair of landmarks pulls; infinite if it is exact.
@@ -159,7 +163,9 @@ impl RegistrationOptions<'_> {
 }
 
 /// Refuses exponents that are negative or not finite, and two that are 0, with which no map is better than another.
-pub(crate) fn check_face_energy(FaceEnergy { area_weight, angle_weight }: FaceEnergy) -> Result<(), Error> {
+pub(crate) fn check_face_energy(
+    FaceEnergy { area_weight, angle_weight, .. }: FaceEnergy,
+) -> Result<(), Error> {
     check_weight("area_weight", area_weight)?;
     check_weight("angle_weight", angle_weight)?;
     if area_weight + angle_weight > 0.0 {

@@ -8,6 +8,9 @@
 //! a product of how areas change and how angles do. For α = β = 1 it is the symmetric Dirichlet energy over 4,
 //! (σ₁² + σ₂² + σ₁⁻² + σ₂⁻²)/4. It is 1 for isometries and infinite for maps that collapse the face.
 //!
+//! The inverse has the same φ, on the area of the image. If both count, a face has (φ − 1)(1 + σ₁σ₂)/2 + 1: the mean of
+//! the two but for the area of the image, whose sum is that of the target, and which flat images cut short.
+//!
 //! The Hessian comes without its negative eigenvalues, in closed form (B. Smith, F. de Goes and T. Kim, Analytic
 //! eigensystems for isotropic distortion energies, ACM Trans. Graph. 38, 2019). The image lies in space, so that J is
 //! 3 × 2: besides the modes of the plane there are two that bend the face out of its plane.
@@ -33,6 +36,8 @@ pub(crate) struct FaceEnergy {
     pub area_weight: f64,
     /// β, the exponent of the angle factor (σ₁/σ₂ + σ₂/σ₁)/2.
     pub angle_weight: f64,
+    /// Whether a face counts by the mean of its own area and its image's, so that the inverse counts as much as the map.
+    pub both_ways: bool,
 }
 
 /// An energy with its derivatives by the two unknowns of each corner.
@@ -77,7 +82,18 @@ pub(super) fn jacobian(hats: &Hats, images: [Vector3; 3]) -> Jacobian {
 
 impl FaceEnergy {
     /// φ of a map with this JᵀJ.
-    pub(super) fn value(&self, [xx, xy, yy]: [f64; 3]) -> f64 {
+    pub(super) fn value(&self, gram: [f64; 3]) -> f64 {
+        let value = self.value_one_way(gram);
+        if !self.both_ways {
+            return value;
+        }
+        let [xx, xy, yy] = gram;
+        let ratio = (xx * yy - xy * xy).max(LEAST_SQUARED_AREA).sqrt();
+        1.0 + (value - 1.0) * 0.5 * (1.0 + ratio)
+    }
+
+    /// φ where a face counts by its own area.
+    fn value_one_way(&self, [xx, xy, yy]: [f64; 3]) -> f64 {
         let square = (xx * yy - xy * xy).max(LEAST_SQUARED_AREA);
         if self.is_dirichlet() {
             return 0.25 * (xx + yy) * (1.0 + 1.0 / square);
@@ -103,34 +119,35 @@ impl FaceEnergy {
         moves: &[[Vector3; 2]; 3],
     ) -> (Expansion, [f64; 3]) {
         let parts = decomposed(jacobian);
+        let along = hats.map(|hat| parts.right.map(|v| hat[0] * v[0] + hat[1] * v[1]));
+        let changes = std::array::from_fn(|i| {
+            let velocity = moves[i / 2][i % 2];
+            parts.left.map(|u| along[i / 2].map(|x| u.dot(velocity) * x))
+        });
         let slopes = self.slopes(parts.values);
-        let mut expansion = Expansion { value: slopes.value, ..Default::default() };
-        // 1. The motion of the face along each pair of directions, left and right
-        let mut rows = [[0.0; 6]; 6];
-        for (corner, (hat, moves)) in hats.iter().zip(moves).enumerate() {
-            let along = parts.right.map(|v| hat[0] * v[0] + hat[1] * v[1]);
-            for (d, velocity) in moves.iter().enumerate() {
-                let [first, second, out] = parts.left.map(|u| u.dot(*velocity));
-                let [xx, yy] = [first * along[0], second * along[1]];
-                let i = 2 * corner + d;
-                expansion.gradient[i] = slopes.first[0] * xx + slopes.first[1] * yy;
-                let turned = [second * along[0] - first * along[1], second * along[0] + first * along[1]];
-                let [turned, mirrored] = turned.map(|x| x * std::f64::consts::FRAC_1_SQRT_2);
-                let motions = [xx, yy, turned, mirrored, out * along[0], out * along[1]];
-                motions.into_iter().enumerate().for_each(|(mode, x)| rows[mode][i] = x);
-            }
-        }
-        // 2. Their curvatures
-        for (factor, row) in slopes.modes(parts.values, &rows) {
-            if factor > 0.0 {
-                expansion.add_square(factor, &row);
-            }
-        }
-        (expansion, parts.by_gram(slopes.first))
+        (expanded(&slopes, parts.values, &changes), parts.by_gram(slopes.first))
+    }
+
+    /// φ with its derivatives by six unknowns, along which J changes by `changes`.
+    pub(super) fn expansion_along(&self, jacobian: &Jacobian, changes: &[Jacobian; 6]) -> Expansion {
+        let parts = decomposed(jacobian);
+        let in_parts = changes.map(|[x, y]| {
+            parts.left.map(|u| {
+                let (x, y) = (u.dot(x), u.dot(y));
+                parts.right.map(|v| x * v[0] + y * v[1])
+            })
+        });
+        expanded(&self.slopes(parts.values), parts.values, &in_parts)
     }
 
     /// φ and its derivatives by the singular values.
-    fn slopes(&self, [s, t]: [f64; 2]) -> Slopes {
+    fn slopes(&self, values: [f64; 2]) -> Slopes {
+        let slopes = self.slopes_one_way(values);
+        if self.both_ways { slopes.both_ways(values) } else { slopes }
+    }
+
+    /// Those where a face counts by its own area.
+    fn slopes_one_way(&self, [s, t]: [f64; 2]) -> Slopes {
         if self.is_dirichlet() {
             return dirichlet_slopes([s, t]);
         }
@@ -150,6 +167,28 @@ impl FaceEnergy {
             mixed: value * (x * y + bent - sheared) / (s * t),
         }
     }
+}
+
+/// φ with its derivatives by unknowns along which UᵀJV changes by `changes`, the third row the one out of the plane.
+fn expanded(slopes: &Slopes, values: [f64; 2], changes: &[[[f64; 2]; 3]; 6]) -> Expansion {
+    let mut expansion = Expansion { value: slopes.value, ..Default::default() };
+    // 1. The motion of the face along each pair of directions, left and right
+    let mut rows = [[0.0; 6]; 6];
+    for (i, [first, second, out]) in changes.iter().enumerate() {
+        let [xx, yy] = [first[0], second[1]];
+        expansion.gradient[i] = slopes.first[0] * xx + slopes.first[1] * yy;
+        let turned = [second[0] - first[1], second[0] + first[1]];
+        let [turned, mirrored] = turned.map(|x| x * std::f64::consts::FRAC_1_SQRT_2);
+        let motions = [xx, yy, turned, mirrored, out[0], out[1]];
+        motions.into_iter().enumerate().for_each(|(mode, x)| rows[mode][i] = x);
+    }
+    // 2. Their curvatures
+    for (factor, row) in slopes.modes(values, &rows) {
+        if factor > 0.0 {
+            expansion.add_square(factor, &row);
+        }
+    }
+    expansion
 }
 
 fn dirichlet_slopes(values: [f64; 2]) -> Slopes {
@@ -187,6 +226,20 @@ struct Slopes {
 }
 
 impl Slopes {
+    /// Those of 1 + (φ − 1)(1 + σ₁σ₂)/2.
+    fn both_ways(&self, [s, t]: [f64; 2]) -> Self {
+        let half = 0.5 * (1.0 + s * t);
+        let excess = self.value - 1.0;
+        let [p, q] = self.first;
+        let [along, across] = self.second;
+        Self {
+            value: 1.0 + excess * half,
+            first: [p * half + 0.5 * excess * t, q * half + 0.5 * excess * s],
+            second: [along * half + p * t, across * half + q * s],
+            mixed: self.mixed * half + 0.5 * (p * s + q * t + excess),
+        }
+    }
+
     /// The eigenvalues of the Hessian by the entries of J with their directions: two that stretch, one that turns, one
     /// that mirrors, and two that bend. `rows` are the motions along the axes of each.
     fn modes(&self, [s, t]: [f64; 2], rows: &[[f64; 6]; 6]) -> [(f64, [f64; 6]); 6] {
@@ -265,10 +318,12 @@ mod tests {
         [Vector3([0.2, 0.7, 0.7]), Vector3([0.6, 0.0, -0.8])],
     ];
 
-    const KINDS: [FaceEnergy; 3] = [
-        FaceEnergy { area_weight: 1.0, angle_weight: 1.0 },
-        FaceEnergy { area_weight: 0.3, angle_weight: 2.0 },
-        FaceEnergy { area_weight: 2.5, angle_weight: 0.0 },
+    const KINDS: [FaceEnergy; 5] = [
+        FaceEnergy { area_weight: 1.0, angle_weight: 1.0, both_ways: false },
+        FaceEnergy { area_weight: 0.3, angle_weight: 2.0, both_ways: false },
+        FaceEnergy { area_weight: 2.5, angle_weight: 0.0, both_ways: false },
+        FaceEnergy { area_weight: 1.0, angle_weight: 1.0, both_ways: true },
+        FaceEnergy { area_weight: 0.3, angle_weight: 2.0, both_ways: true },
     ];
 
     /// φ with the unknowns at `x`.
@@ -290,6 +345,23 @@ mod tests {
         let dirichlet = (xx + yy) * (1.0 + 1.0 / (xx * yy - xy * xy)) / 4.0;
         assert!((KINDS[0].value([xx, xy, yy]) - dirichlet).abs() < 1e-12 * dirichlet);
         assert!(KINDS.iter().all(|kind| kind.value([1.0, 0.0, 1.0]) == 1.0));
+    }
+
+    #[test]
+    fn a_map_and_its_inverse_count_alike_both_ways() {
+        let [xx, xy, yy] = gram(&jacobian(&HATS, IMAGES));
+        let determinant = xx * yy - xy * xy;
+        let inverse = [yy / determinant, -xy / determinant, xx / determinant];
+        let [_, _, _, dirichlet, general] = KINDS;
+        for energy in [dirichlet, general] {
+            // on an area of 1, and on that of the image
+            let there = energy.value([xx, xy, yy]) - 1.0;
+            let back = determinant.sqrt() * (energy.value(inverse) - 1.0);
+            assert!((there - back).abs() < 1e-12 * there);
+            let one_way = FaceEnergy { both_ways: false, ..energy };
+            let sum = one_way.value([xx, xy, yy]) + determinant.sqrt() * one_way.value(inverse);
+            assert!((2.0 * there - (sum - 1.0 - determinant.sqrt())).abs() < 1e-12 * sum);
+        }
     }
 
     #[test]
@@ -334,6 +406,26 @@ mod tests {
     }
 
     #[test]
+    fn derivatives_along_changes_of_the_map_are_those_along_velocities_of_the_corners() {
+        let changes = std::array::from_fn(|i| {
+            let (corner, d) = (i / 2, i % 2);
+            HATS[corner].map(|slope| MOVES[corner][d] * slope)
+        });
+        for energy in KINDS {
+            let (by_corners, along) =
+                (expansion(energy), energy.expansion_along(&jacobian(&HATS, IMAGES), &changes));
+            assert_eq!(by_corners.value, along.value);
+            let scale = by_corners.value;
+            for i in 0..6 {
+                assert!((by_corners.gradient[i] - along.gradient[i]).abs() < 1e-12 * scale);
+                for j in 0..6 {
+                    assert!((by_corners.hessian[i][j] - along.hessian[i][j]).abs() < 1e-11 * scale);
+                }
+            }
+        }
+    }
+
+    #[test]
     fn half_angles_are_those_of_the_textbook() {
         for k in -31..=31 {
             let angle = 0.1 * f64::from(k);
@@ -346,7 +438,7 @@ mod tests {
 
     #[test]
     fn the_symmetric_dirichlet_energy_is_the_limit_of_other_weights() {
-        let near = FaceEnergy { area_weight: 1.0 + 1e-9, angle_weight: 1.0 - 1e-9 };
+        let near = FaceEnergy { area_weight: 1.0 + 1e-9, angle_weight: 1.0 - 1e-9, both_ways: false };
         let (exact, general) = (expansion(KINDS[0]), expansion(near));
         for i in 0..6 {
             assert!((exact.gradient[i] - general.gradient[i]).abs() < 1e-6 * exact.value);

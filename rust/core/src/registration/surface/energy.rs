@@ -2,7 +2,7 @@
 //! The energy of a map between two surfaces, and its derivatives.
 //!
 //! Each source face counts by its area, with two energies of the same kind: that of the flat face between the images of
-//! its corners in space, which is what the map is for, and, times a weight, that of the face in the domain, measured by
+//! its corners in space, or of its parts where it spans many faces of the target, which is what the map is for, and, times a weight, that of the face in the domain, measured by
 //! the target's metric there. The second one sees what the first does not: a face that turns over on the target. It is
 //! infinite where a face folds in the domain, and so keeps the descent away from folds. Beyond a slack it counts fully,
 //! below it not at all, so that it does not act where the map is good.
@@ -12,6 +12,7 @@
 
 use super::density::{Expansion, FaceEnergy, Hats, gram, jacobian};
 use super::problem::{Pull, SurfaceProblem};
+use super::subdivision::{Subdivision, is_much_finer};
 use super::target::{Placed, Root, Target, of_unit_area, product};
 use crate::mesh::geometry::triangle;
 use crate::mesh::{TriangleMesh, Vertex};
@@ -38,6 +39,8 @@ pub(super) struct SurfaceEnergy<'a> {
     hats: Vec<Hats>,
     /// Faces that do not count, since they are folded at the start.
     left_out: Vec<bool>,
+    /// How faces are split that span many of the target.
+    subdivision: Subdivision<'a>,
     /// A third of the areas of the faces at each vertex.
     shares: Vec<f64>,
     /// The place in space and the weight of the soft landmarks at each vertex that has any.
@@ -55,7 +58,9 @@ pub(super) struct VertexExpansion {
 
 impl<'a> SurfaceEnergy<'a> {
     pub(super) fn new(problem: &'a SurfaceProblem<'a>, guard: Guard) -> Self {
-        let (source, kind) = (problem.source, problem.face_energy);
+        let source = problem.source;
+        let both_ways = problem.face_energy.both_ways || is_much_finer(problem.target, source);
+        let kind = FaceEnergy { both_ways, ..problem.face_energy };
         let points = of_unit_area(source);
         let target = Target::new(problem.target, problem.target_in_domain, problem.domain);
         let total: f64 = source.face_areas().iter().sum();
@@ -66,13 +71,19 @@ impl<'a> SurfaceEnergy<'a> {
         let mut pulls: Vec<_> = problem.pulls.iter().map(pull).collect();
         pulls.sort_by_key(|(vertex, _, _)| *vertex);
         let left_out = vec![false; source.n_faces()];
-        Self { source, target, guard, kind, areas, hats, left_out, shares, pulls, problem }
+        let subdivision = Subdivision::none(source.n_faces());
+        Self { source, target, guard, kind, areas, hats, left_out, subdivision, shares, pulls, problem }
     }
 
     /// Leaves out the faces that are folded by a map; returns them.
     pub(super) fn leave_out_folded(&mut self, map: &[Placed]) -> Vec<usize> {
         self.left_out = parallel::map(self.areas.len(), |face| Self::is_folded(self.corners(map, face)));
         (0..self.areas.len()).filter(|&face| self.left_out[face]).collect()
+    }
+
+    /// Splits the faces that span many of the target by a map, for all maps from now on.
+    pub(super) fn subdivide(&mut self, map: &[Placed]) {
+        self.subdivision = Subdivision::new(self.source, &self.target, map);
     }
 
     /// The energy of a map.
@@ -110,7 +121,9 @@ impl<'a> SurfaceEnergy<'a> {
             return f64::INFINITY;
         }
         let hats = &self.hats[face];
-        let in_space = self.kind.value(gram(&jacobian(hats, corners.map(|placed| placed.point))));
+        let split = self.subdivision.value(&self.target, self.kind, face, hats, corners);
+        let in_space = split
+            .unwrap_or_else(|| self.kind.value(gram(&jacobian(hats, corners.map(|placed| placed.point)))));
         let metric = self.target.mean_metric(corners);
         let [x, y] = jacobian(hats, corners.map(|placed| placed.in_domain));
         let in_domain = [product(&metric, x, x), product(&metric, x, y), product(&metric, y, y)];
@@ -128,8 +141,11 @@ impl<'a> SurfaceEnergy<'a> {
             return Expansion::default();
         }
         let (hats, area) = (&self.hats[face], self.areas[face]);
-        let images = jacobian(hats, corners.map(|placed| placed.point));
-        let (in_space, _) = self.kind.expansion(&images, hats, &frames.map(|frame| *frame));
+        let split = self.subdivision.expansion(&self.target, self.kind, face, hats, corners, frames);
+        let in_space = split.unwrap_or_else(|| {
+            let images = jacobian(hats, corners.map(|placed| placed.point));
+            self.kind.expansion(&images, hats, &frames.map(|frame| *frame)).0
+        });
         let mut sum = Expansion::default();
         sum.add(area, &in_space);
         self.add_guard(&mut sum, face, corners, frames);
@@ -289,7 +305,7 @@ mod tests {
     const STEP: f64 = 1e-6;
 
     /// With these exponents faces of little distortion exceed the slack of the guard too.
-    const STEEP: FaceEnergy = FaceEnergy { area_weight: 3.0, angle_weight: 3.0 };
+    const STEEP: FaceEnergy = FaceEnergy { area_weight: 3.0, angle_weight: 3.0, both_ways: false };
 
     fn placed(energy: &SurfaceEnergy<'_>, sample: &Sample) -> Vec<Placed> {
         sample.start.iter().map(|&location| energy.target.placed(location)).collect()
@@ -309,15 +325,21 @@ mod tests {
 
     #[test]
     fn gradients_of_faces_are_those_of_differences() {
-        let sample = Sample::spheres();
-        let mut problem = sample.problem();
-        let kinds = [[1.0, 1.0], [0.4, 2.0]]
-            .map(|[area_weight, angle_weight]| FaceEnergy { area_weight, angle_weight });
-        for kind in kinds.into_iter().chain([STEEP]) {
-            problem.face_energy = kind;
-            for slack in [0.0, 3.0] {
-                let energy = SurfaceEnergy::new(&problem, Guard { weight: 0.7, slack });
+        let kinds = [[1.0, 1.0], [0.4, 2.0]].map(|[area_weight, angle_weight]| FaceEnergy {
+            area_weight,
+            angle_weight,
+            both_ways: false,
+        });
+        // the faces of the last two span many of the target
+        for sample in [Sample::spheres(), Sample::coarse_sphere(), Sample::coarse_disk()] {
+            for (kind, slack) in
+                kinds.into_iter().chain([STEEP]).flat_map(|kind| [0.0, 3.0].map(|slack| (kind, slack)))
+            {
+                let mut problem = sample.problem();
+                problem.face_energy = kind;
+                let mut energy = SurfaceEnergy::new(&problem, Guard { weight: 0.7, slack });
                 let map = placed(&energy, &sample);
+                energy.subdivide(&map);
                 for face in 0..energy.areas.len() {
                     let corners = energy.corners(&map, face);
                     let frames = corners.map(|placed| energy.target.frame(placed.location.triangle));

@@ -7,6 +7,9 @@
 //! around single vertices. An energy in the domain keeps faces from folding there ([`energy`]). Its weight falls by
 //! stages: at first it smooths the way, at last it acts next to folds only.
 //!
+//! Where the target is much finer, faces are split into parts that see what lies between their corners
+//! ([`subdivision`]), anew for each stage.
+//!
 //! The map is stationary where neither betters it: target edges are kinks of the energy, at which vertices come to lie
 //! with a slope on either side ([`kinks`]).
 //!
@@ -19,6 +22,7 @@ mod newton;
 mod problem;
 #[cfg(test)]
 mod sample_maps;
+mod subdivision;
 mod sweep;
 mod target;
 mod walk;
@@ -139,6 +143,7 @@ pub(crate) fn descend(
     let (mut map, mut status) = (map, Status::MaxIterations);
     for (k, stage) in stages.iter().enumerate() {
         energy.guard = stage.guard;
+        energy.subdivide(&map);
         let mut moving = Moving::new(&energy, &motions, map);
         if problem.start != Start::Domain && k == 0 {
             (0..SWEEPS).for_each(|_| moving.sweep(&colors));
@@ -151,6 +156,7 @@ pub(crate) fn descend(
         }
     }
     energy.guard = stages[stages.len() - 1].guard;
+    energy.subdivide(&map);
     let value = energy.value(&map);
     let locations = map.into_iter().map(|placed| placed.location).collect();
     Descended { locations, energy: value, status }

@@ -59,6 +59,32 @@ impl Sample {
         Self { source, target, domain: CanonicalDomain::Disk, target_in_domain: to.0, start }
     }
 
+    /// An ellipsoid of few faces and a fine bumpy ball.
+    pub(super) fn coarse_sphere() -> Self {
+        let (points, faces) = octasphere(1);
+        let (fine, target_faces) = octasphere(4);
+        let target_in_domain: Vec<Vector3> =
+            fine.iter().map(|&x| (x + Vector3([0.06, -0.1, 0.08])).normalized()).collect();
+        let locator = Locator::new(&target_in_domain, &target_faces);
+        let start = points.iter().map(|&x| (x + Vector3([0.21, 0.24, 0.27])).normalized());
+        let start = start.map(|x| locator.locate(x)).collect();
+        let source = mesh(points.iter().map(|&x| Vector3([x[0], 0.8 * x[1], 0.6 * x[2]])), &faces);
+        let target = mesh(fine.iter().map(|&x| bumpy(x)), &target_faces);
+        Self { source, target, domain: CanonicalDomain::Sphere, target_in_domain, start }
+    }
+
+    /// A flat disk of few rings within a fine dome, turned and sheared.
+    pub(super) fn coarse_disk() -> Self {
+        let ((from, faces), (to, target_faces)) = (rings(2), rings(12));
+        let source = mesh(from.iter().map(|&x| Vector3([x[0], x[1], 0.0])), &faces);
+        let dome = |x: Vector3| Vector3([x[0], x[1], 0.3 * (2.0 * x[0] + x[1] * x[1])]);
+        let target = mesh(to.iter().map(|&x| dome(x)), &target_faces);
+        let sheared = |Vector3([u, v, _]): Vector3| Vector3([0.91 * u - 0.09 * v, 0.1 * u + 0.87 * v, 1.0]);
+        let locator = Locator::new(&to, &target_faces);
+        let start = from.iter().map(|&x| locator.locate(sheared(x))).collect();
+        Self { source, target, domain: CanonicalDomain::Disk, target_in_domain: to, start }
+    }
+
     /// The bumpy ball, turned about a diagonal, onto itself.
     pub(super) fn turned_ball() -> Self {
         let (points, faces) = octasphere(2);
@@ -81,7 +107,7 @@ impl Sample {
             signals: Signals::default(),
             start: Start::Domain,
             is_coarse: false,
-            face_energy: FaceEnergy { area_weight: 1.0, angle_weight: 1.0 },
+            face_energy: FaceEnergy { area_weight: 1.0, angle_weight: 1.0, both_ways: false },
         }
     }
 }

@@ -53,8 +53,18 @@ impl<'a> Target<'a> {
         Self { mesh, domain, points, in_domain, normals, metrics }
     }
 
-    pub(super) fn faces(&self) -> &[[Vertex; 3]] {
+    pub(super) fn faces(&self) -> &'a [[Vertex; 3]] {
         self.mesh.faces()
+    }
+
+    /// The vertices in the domain.
+    pub(super) fn in_domain(&self) -> &'a [Vector3] {
+        self.in_domain
+    }
+
+    /// The corners of a face in the domain.
+    pub(super) fn corners_in_domain(&self, face: Face) -> [Vector3; 3] {
+        triangle(self.in_domain, self.faces()[face])
     }
 
     pub(super) fn mesh(&self) -> &TriangleMesh {
@@ -68,12 +78,16 @@ impl<'a> Target<'a> {
 
     /// A place with its points.
     pub(super) fn placed(&self, location: Location) -> Placed {
-        let flat = location.point_on(self.in_domain, self.faces());
-        let in_domain = match self.domain {
+        let in_domain = self.onto_domain(location.point_on(self.in_domain, self.faces()));
+        Placed { location, point: location.point(self.corners(location.triangle)), in_domain }
+    }
+
+    /// A point of the flat faces in the domain, projected onto it.
+    pub(super) fn onto_domain(&self, flat: Vector3) -> Vector3 {
+        match self.domain {
             CanonicalDomain::Sphere => flat.normalized(),
             CanonicalDomain::Disk => flat,
-        };
-        Placed { location, point: location.point(self.corners(location.triangle)), in_domain }
+        }
     }
 
     /// Two orthogonal unit vectors in the plane of a face.

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Sources of few faces, as cages are, on targets that are much finer: what lies between their vertices counts."""
+"""Cages on targets that are much finer: what lies between the vertices of the source counts."""
 
-import authalic
 import numpy as np
 import pytest
+
+import authalic
 
 from .meshes import grid
 from .volumes import voxel_sides
 
 
 def animal(leg, fineness):
-    """A box with one leg of two by two cells and a length, each cell with a number of voxels along its side."""
+    """A box with a leg of two by two cells of some length; each cell has some voxels along its side."""
     mask = np.zeros((6, 5, 4 + leg), dtype=bool)
     mask[:, :, leg:] = True
     mask[:2, :2, :leg] = True

@@ -73,13 +73,15 @@ impl Sample {
         Self { source, target, domain: CanonicalDomain::Sphere, target_in_domain, start }
     }
 
-    /// A flat disk of few rings within a fine dome, turned and sheared.
+    /// A flat disk of few rings within a fine dome, turned, sheared and shifted.
     pub(super) fn coarse_disk() -> Self {
         let ((from, faces), (to, target_faces)) = (rings(2), rings(12));
         let source = mesh(from.iter().map(|&x| Vector3([x[0], x[1], 0.0])), &faces);
         let dome = |x: Vector3| Vector3([x[0], x[1], 0.3 * (2.0 * x[0] + x[1] * x[1])]);
         let target = mesh(to.iter().map(|&x| dome(x)), &target_faces);
-        let sheared = |Vector3([u, v, _]): Vector3| Vector3([0.91 * u - 0.09 * v, 0.1 * u + 0.87 * v, 1.0]);
+        let sheared = |Vector3([u, v, _]): Vector3| {
+            Vector3([0.91 * u - 0.09 * v + 0.021, 0.1 * u + 0.87 * v - 0.013, 1.0])
+        };
         let locator = Locator::new(&to, &target_faces);
         let start = from.iter().map(|&x| locator.locate(sheared(x))).collect();
         Self { source, target, domain: CanonicalDomain::Disk, target_in_domain: to, start }

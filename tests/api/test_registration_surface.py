@@ -88,27 +88,6 @@ def test_progress_grows_through_the_descent(pair):
     assert "Keeping shapes" in messages
 
 
-def test_progress_grows_where_coarse_meshes_are_of_no_use():
-    """Landmarks that change places do not meet on coarse meshes, and the whole surfaces begin anew."""
-    ball = meshes.icosphere(5)
-    far = [int(np.argmax(ball.vertices @ axis)) for axis in (*np.eye(3), *-np.eye(3))]
-    corner = ball.faces[np.argmax(ball.vertices[ball.faces[:, 0]] @ (1, 1, 1))]
-    egg = meshes.Mesh(ball.vertices * (1, 1, 1.3), ball.faces)
-    heard = []
-    result = authalic.register_spheres(
-        ball,
-        egg,
-        source_landmarks=[*far, *corner],
-        target_landmarks=[*far, corner[0], corner[2], corner[1]],
-        progress=lambda fraction, message: heard.append((fraction, message)) or True,
-    )
-    fractions, messages = zip(*heard, strict=True)
-    assert len(result.missed)
-    assert messages.count("Coarsening") and "Keeping shapes" in messages
-    assert list(fractions) == sorted(fractions)
-    assert fractions[-1] == 1
-
-
 @both
 def test_a_descent_that_is_cancelled_returns_a_map_without_folds(pair):
     def progress(_fraction, message):

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Registrations by their properties: no folds, landmarks on landmarks, identities, refusals, inverse.
 
-use crate::common::closed::{bumpy, radial, spheres};
+use crate::common::closed::{bumpy, parallels, radial, spheres};
 use crate::common::public::{planar, spatial, triples};
 use crate::common::public::{register_disks, register_spheres};
 use crate::common::random::Random;
@@ -244,4 +244,24 @@ proptest! {
             Err(error) => prop_assert_eq!(error, Error::CancelledEarly),
         }
     }
+}
+
+#[test]
+fn progress_never_falls_even_where_coarse_meshes_are_of_no_use() {
+    // landmarks of one face that change places meet on no coarse mesh, so that the whole surfaces begin anew
+    let ball = parallels(72, 72).mesh();
+    assert!(ball.n_vertices() > 5_000);
+    let [a, b, c] = ball.faces()[2_600].map(Vertex::index);
+    let far = [0, 1_000, 4_500];
+    let (source, target) = ([&far[..], &[a, b, c]].concat(), [&far[..], &[a, c, b]].concat());
+    let mut heard = Vec::new();
+    let mut observer = |fraction: f64, _: &str| {
+        heard.push(fraction);
+        true
+    };
+    let landmarks = Landmarks { source: &source, target: &target };
+    let found = register_spheres(&ball, &ball, &landmarks, &Default::default(), &mut observer).unwrap();
+    assert_eq!(found.status, Status::LandmarksMissed);
+    assert!(heard.windows(2).all(|pair| pair[0] <= pair[1]));
+    assert_eq!(heard.last(), Some(&1.0));
 }

@@ -271,6 +271,11 @@ def test_a_change_of_tests_runs_these_tests():
     assert "python" not in changes.touched(["tests/api/test_that_was_deleted.py"])
 
 
+def test_a_change_of_the_lock_file_of_the_page_compares_it_with_that_of_the_package():
+    selection = changes.touched(["rust/web/Cargo.lock"])
+    assert selection["web"] == () and "tests/test_scripts.py" in selection["python"]
+
+
 def test_what_has_changed_is_what_differs_from_the_main_branch(monkeypatch, tmp_path):
     def git(*words):
         author = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"]

@@ -31,6 +31,7 @@ def _whole(*steps: str) -> Selection:
 _RULES: tuple[tuple[str, Selection], ...] = (
     ("rust/fuzz/*", {}),
     ("rust/web/page/*", {"python": STRUCTURE}),
+    ("rust/web/Cargo.lock", {"web": (), "python": PROJECT}),
     ("rust/web/*", {"web": (), "python": STRUCTURE}),
     ("rust/core/tests/*", _whole("rustfmt", "clippy", "rust")),
     ("rust/core/*", _whole(*EVERYTHING)),

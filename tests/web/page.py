@@ -13,10 +13,18 @@ from selenium.webdriver.remote.command import Command
 from selenium.webdriver.support.ui import WebDriverWait
 
 SECONDS = 600
+# Fulfilled when the page has begun, or refused: it reads a file's text later than it hears of the file.
 _DROP = """
 const data = new DataTransfer();
 data.items.add(new File([arguments[0]], arguments[1]));
-document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+return new Promise((done) => {
+  const observer = new MutationObserver(() => {
+    observer.disconnect();
+    done();
+  });
+  observer.observe(document.body, { attributeFilter: ["data-state"] });
+  document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+});
 """
 # The different colors of a canvas, and how many of its pixels are red as seams are.
 _COLORS = """
@@ -37,13 +45,13 @@ _FRAMES = "return new Promise((done) => requestAnimationFrame(() => requestAnima
 
 
 class Page:
-    """The page, opened anew and ready."""
+    """The page, opened anew: ready, or unable to start."""
 
     def __init__(self, browser: webdriver.Remote, address: str, pictures: Path) -> None:
         self._browser, self._pictures = browser, pictures
         browser.set_script_timeout(SECONDS)
         browser.get(address)
-        self._wait(lambda: self._data("ready") == "yes")
+        self._wait(lambda: self._data("ready") == "yes" or self._data("state") == "failed")
 
     def drop(self, text: str, name: str = "mesh.obj") -> None:
         """Drops a file, and waits for what comes of it."""
@@ -51,7 +59,7 @@ class Page:
         self.wait()
 
     def begin(self, text: str, name: str = "mesh.obj") -> None:
-        """Drops a file."""
+        """Drops a file, which the page begins with, or refuses."""
         self._browser.execute_script(_DROP, text, name)
 
     def wait(self) -> None:
@@ -88,7 +96,7 @@ class Page:
         return self._browser.find_element(By.CSS_SELECTOR, selector).is_displayed()
 
     def downloaded(self) -> str:
-        """The file behind the link, and its name."""
+        """The file behind the link."""
         link = self._browser.find_element(By.ID, "download").get_attribute("href")
         return str(self._browser.execute_script("return fetch(arguments[0]).then((it) => it.text())", link))
 

@@ -187,6 +187,28 @@ def test_a_run_can_be_stopped_and_another_begun(page: Page) -> None:
     assert page.figures["islands"] == 1 and page.figures["areaError"] < 1e-6
 
 
+def test_a_refused_file_ends_the_run_before_it(page: Page) -> None:
+    """Else its UVs would come as those of the next file."""
+    page.begin(shape("frame"), "first.obj")
+    assert page.is_working()
+    page.drop("solid", "refused.stl")
+    assert page.message.startswith("refused.stl is no OBJ file") and not page.is_shown("#stop")
+    page.drop(SQUARE + "f 1 2 3 4\n", "second.obj")
+    assert page.figures["islands"] == 1 and "second.obj" in page.text("#about")
+    assert sum(line.startswith("v ") for line in page.downloaded().splitlines()) == 4
+
+
+def test_a_core_that_cannot_start_is_told_once_and_tried_again_with_the_next_file(
+    lacking: tuple[Page, list[str]],
+) -> None:
+    page, requests = lacking
+    reasons = ("WebAssembly could not be started: ", "The worker stopped: its script could not be loaded")
+    assert page.message.startswith(reasons) and len(requests) == 1
+    page.drop(SQUARE + "f 1 2 3 4\n")
+    assert page.message.startswith(reasons) and len(requests) == 2
+    assert not page.is_working() and not page.is_shown("#figures")
+
+
 def test_model_and_layout_are_drawn(page: Page) -> None:
     assert page.colors("model") == (1, 0)
     page.press('[data-shape="cow"]')

@@ -9,7 +9,7 @@ const element = (id) => document.getElementById(id);
 const chosen = (name) => document.querySelector(`input[name="${name}"]:checked`).value;
 
 // The file that is open, the mesh and the UVs that are shown.
-const state = { text: null, name: "", mesh: null, uv: null, worker: null, file: null };
+const state = { text: null, name: "", mesh: null, uv: null, worker: null, isReady: false, file: null };
 
 let modelView;
 let uvView;
@@ -29,14 +29,24 @@ function main() {
 // 1. The worker
 
 function startWorker() {
-  state.worker?.terminate();
+  stopWorker();
   state.worker = new Worker("worker.js", { type: "module" });
   state.worker.onmessage = ({ data }) => answers[data.kind](data);
-  state.worker.onerror = (event) => answers.problem({ message: `The worker stopped: ${event.message}`, isFatal: true });
+  state.worker.onerror = ({ message }) => {
+    const reason = message ?? "its script could not be loaded";
+    answers.problem({ message: `The worker stopped: ${reason}`, isFatal: true });
+  };
+}
+
+function stopWorker() {
+  state.worker?.terminate();
+  state.worker = null;
+  state.isReady = false;
 }
 
 const answers = {
   ready() {
+    state.isReady = true;
     document.body.dataset.ready = "yes";
     if (state.text === null) {
       tell("Drop a file, or choose a shape.");
@@ -74,8 +84,11 @@ const answers = {
 
   problem({ message, isMendable, isFatal }) {
     working(false);
-    if (isFatal) {
+    if (isFatal && state.isReady) {
       startWorker();
+    } else if (isFatal) {
+      // one that could not start would fail again; the next run tries once more
+      stopWorker();
     }
     tell(message, true);
     element("mend").hidden = !isMendable || element("repair").checked;
@@ -87,7 +100,7 @@ function unwrap() {
   if (state.text === null) {
     return;
   }
-  if (document.body.dataset.state === "working") {
+  if (state.worker === null || document.body.dataset.state === "working") {
     startWorker();
   }
   forget();
@@ -120,6 +133,10 @@ function open(name, text) {
 
 async function openFile(file) {
   if (!/\.obj$/i.test(file.name)) {
+    if (document.body.dataset.state === "working") {
+      startWorker();
+      working(false);
+    }
     tell(`${file.name} is no OBJ file. Export the mesh as Wavefront OBJ.`, true);
     document.body.dataset.state = "failed";
     return;

@@ -2,10 +2,11 @@
 //! The energy of a map between two surfaces, and its derivatives.
 //!
 //! Each source face counts by its area, with two energies of the same kind: that of the flat face between the images of
-//! its corners in space, or of its parts where it spans many faces of the target, which is what the map is for, and, times a weight, that of the face in the domain, measured by
-//! the target's metric there. The second one sees what the first does not: a face that turns over on the target. It is
-//! infinite where a face folds in the domain, and so keeps the descent away from folds. Beyond a slack it counts fully,
-//! below it not at all, so that it does not act where the map is good.
+//! its corners in space, or of its parts where it spans many faces of the target, which is what the map is for, and,
+//! times a weight, that of the face in the domain, measured by the target's metric there. The second one sees what the
+//! first does not: a face that turns over on the target. It is infinite where a face folds in the domain, and so keeps
+//! the descent away from folds. Beyond a slack it counts fully, below it not at all, so that it does not act where the
+//! map is good.
 //!
 //! Vertices add soft landmarks, w |g(v) − place|², and signals, |f(v) − f(g(v))|² by area. Both surfaces have an area
 //! of 1.

@@ -22,7 +22,7 @@ from .wrap_options import Wrapping
 class AUTHALIC_OT_register(Modal, Wrapping, bpy.types.Operator):
     """Add a shape key whose slider morphs the active object into its target, landmarks onto landmarks.
 
-    Shapes or areas are kept; no face folds over. The normals of both meshes
+    Shapes or areas are kept. The normals of both meshes
     must face the same way (with curves only if the meshes are open), or the map is mirrored: recalculate or
     flip the normals of one mesh"""
 

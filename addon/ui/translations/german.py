@@ -307,11 +307,11 @@ _TOOLTIPS = {
         "Objekt, das verformt wird, folgen sie ihrer Umgebung"
     ),
     "Add a shape key whose slider morphs the active object into its target, landmarks onto "
-    "landmarks.\n\nShapes or areas are kept; no face folds over. The normals of both meshes\nmust face "
+    "landmarks.\n\nShapes or areas are kept. The normals of both meshes\nmust face "
     "the same way (with curves only if the meshes are open), or the map is mirrored: recalculate or\nflip "
     "the normals of one mesh": (
         "Einen Shape-Key hinzufügen, dessen Regler das aktive Objekt in sein Ziel verformt, Landmarken "
-        "auf Landmarken.\n\nFormen oder Flächeninhalte bleiben erhalten; keine Fläche klappt um. Die "
+        "auf Landmarken.\n\nFormen oder Flächeninhalte bleiben erhalten. Die "
         "Normalen beider Meshes müssen zur selben Seite zeigen (bei Kurven nur, wenn die Meshes offen "
         "sind), sonst wird gespiegelt: Die Normalen eines Meshes neu berechnen oder umdrehen"
     ),

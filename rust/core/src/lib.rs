@@ -3,7 +3,7 @@
 //!
 //! An authalic map preserves areas: a face that covers one percent of the surface covers one percent of the image.
 //! [`disk_map`] maps a surface with one boundary to the unit disk or onto a rectangle, [`sphere_map`] a closed surface
-//! onto the unit sphere, which [`SphereMap::layout`] lays out in the plane. No result has a folded face; exact
+//! onto the unit sphere, which [`SphereMap::layout`] lays out in the plane. No such map has a folded face; exact
 //! predicates decide. [`register_disks`] and [`register_spheres`] map one surface onto another by landmark points,
 //! [`register_hyperbolic`] by landmark curves. [`untangle()`] removes the folds of a given map, [`distortion()`]
 //! measures any map.

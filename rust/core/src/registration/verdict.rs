@@ -60,9 +60,9 @@ pub(super) fn missed(
 /// Standard deviation of the area ratios below which the areas are even, whatever the descent reports.
 const EVEN_ENOUGH: f64 = 0.01;
 
-/// The status of a registration. Areas alone: converged if all landmarks met and the areas are even, else that of the
-/// descent; no better than the statuses of the two maps. Between the surfaces: that of the descent; stalled if faces are
-/// folded, as where the target lies in the disk as a strip so thin that the boundary cannot be carried onto its own.
+/// The status of a registration. Stalled if faces are folded, as where the target lies in the disk as a strip so thin that
+/// the boundary cannot be carried onto its own. Areas alone: converged if all landmarks met and the areas are even, else
+/// that of the descent; no better than the statuses of the two maps. Between the surfaces: that of the descent.
 pub(super) fn verdict(
     energy: Energy,
     descent: Status,
@@ -75,7 +75,7 @@ pub(super) fn verdict(
     match descent {
         Status::Cancelled => Status::Cancelled,
         _ if !missed.is_empty() => Status::LandmarksMissed,
-        descent if energy == Energy::Surface && is_folded => worst([descent, Status::Stalled]),
+        descent if is_folded => worst([descent, Status::Stalled]),
         descent if energy == Energy::Surface => descent,
         _ if is_even => worst([Status::Converged, maps[0], maps[1]]),
         descent => worst([descent, maps[0], maps[1]]),
@@ -107,13 +107,15 @@ mod tests {
         let folded = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.9, 0.1]];
         let [sound, folded] = [&sound, &folded]
             .map(|map| measure(mesh.points(), mesh.faces(), Image::Plane(map), mesh.face_areas()).unwrap());
-        let of = |descent, missed: &[usize], source| {
-            verdict(Energy::Surface, descent, [Status::Converged; 2], missed, [source, &sound])
-        };
-        assert_eq!(of(Status::Converged, &[], &sound), Status::Converged);
-        assert_eq!(of(Status::Converged, &[], &folded), Status::Stalled);
-        assert_eq!(of(Status::MaxIterations, &[], &folded), Status::Stalled);
-        assert_eq!(of(Status::Converged, &[0], &folded), Status::LandmarksMissed);
-        assert_eq!(of(Status::Cancelled, &[], &folded), Status::Cancelled);
+        for energy in [Energy::Surface, Energy::Area] {
+            let of = |descent, missed: &[usize], source| {
+                verdict(energy, descent, [Status::Converged; 2], missed, [source, &sound])
+            };
+            assert_eq!(of(Status::Converged, &[], &sound), Status::Converged);
+            assert_eq!(of(Status::Converged, &[], &folded), Status::Stalled);
+            assert_eq!(of(Status::MaxIterations, &[], &folded), Status::Stalled);
+            assert_eq!(of(Status::Converged, &[0], &folded), Status::LandmarksMissed);
+            assert_eq!(of(Status::Cancelled, &[], &folded), Status::Cancelled);
+        }
     }
 }

@@ -60,7 +60,7 @@ pub(super) struct VertexExpansion {
 impl<'a> SurfaceEnergy<'a> {
     pub(super) fn new(problem: &'a SurfaceProblem<'a>, guard: Guard) -> Self {
         let source = problem.source;
-        let both_ways = problem.face_energy.both_ways || is_much_finer(problem.target, source);
+        let both_ways = is_much_finer(problem.target, source);
         let kind = FaceEnergy { both_ways, ..problem.face_energy };
         let points = of_unit_area(source);
         let target = Target::new(problem.target, problem.target_in_domain, problem.domain);

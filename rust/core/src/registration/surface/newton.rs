@@ -5,7 +5,7 @@
 //! kinks of the energy: a vertex that lies lowest on one stays there ([`kinks`](super::kinks)). A few faces near their
 //! limit would hold up a whole step: their vertices go a part of the way, their neighbors up to twice that part, and so
 //! on. Steps that keep little of their promise damp the next ones (D. W. Marquardt, An algorithm for least-squares
-//! estimation of nonlinear parameters, J. SIAM 11, 1963): undamped ones would magnify noise in the input two times each.
+//! estimation of nonlinear parameters, J. SIAM 11, 1963): with undamped ones noise in the input grows from step to step.
 //!
 //! Cost of a step: one factorization of two unknowns per vertex.
 

@@ -58,7 +58,8 @@ fn threads() -> Option<Arc<ThreadPool>> {
         std::mem::forget(pool.take());
     }
     if pool.as_ref().is_none_or(|pool| pool.wanted != wanted) {
-        let threads = Arc::new(rayon::ThreadPoolBuilder::new().num_threads(wanted).build().ok()?);
+        let pool_of = rayon::ThreadPoolBuilder::new().num_threads(wanted);
+        let threads = Arc::new(pool_of.thread_name(|number| format!("authalic {number}")).build().ok()?);
         *pool = Some(Pool { process, wanted, threads });
     }
     pool.as_ref().map(|pool| pool.threads.clone())

@@ -49,6 +49,13 @@ impl Location {
         Self { triangle: corner.face(), barycentric }
     }
 
+    /// The place at a corner.
+    pub(crate) fn at_corner(corner: Corner) -> Self {
+        let mut barycentric = [0.0; 3];
+        barycentric[corner.place()] = 1.0;
+        Self { triangle: corner.face(), barycentric }
+    }
+
     /// The point of the place, given the corners of its face.
     pub(crate) fn point(&self, corners: [Vector3; 3]) -> Vector3 {
         Vector3::from_fn(|axis| (0..3).map(|k| self.barycentric[k] * corners[k][axis]).sum())

@@ -35,10 +35,12 @@ impl SurfaceEnergy<'_> {
     /// How a vertex goes on that is free to move.
     pub(super) fn course(&self, map: &[Placed], vertex: Vertex) -> Course {
         let location = map[vertex].location;
-        let edges: Vec<usize> = (0..3).filter(|&k| location.barycentric[k] == 0.0).collect();
-        match edges[..] {
-            [] => self.course_in_face(location),
-            [edge] => self.course_at_edge(map, vertex, location.triangle.corner(edge)),
+        let at_edge = |edge| self.course_at_edge(map, vertex, location.triangle.corner(edge));
+        match location.barycentric.map(|coordinate| coordinate == 0.0) {
+            [false, false, false] => self.course_in_face(location),
+            [true, false, false] => at_edge(0),
+            [false, true, false] => at_edge(1),
+            [false, false, true] => at_edge(2),
             _ => self.course_at_vertex(map, vertex),
         }
     }
@@ -50,8 +52,8 @@ impl SurfaceEnergy<'_> {
 
     /// Along an edge.
     fn course_along(&self, location: Location, edge: Corner) -> Course {
-        let [from, to] = edge.half_edge(self.target.faces()).map(|vertex| self.target.points[vertex]);
-        Course { location, frame: [(to - from).normalized(), Vector3::ZERO], edge: Some(edge) }
+        let [along, _] = self.target.edge_frame(edge);
+        Course { location, frame: [along, Vector3::ZERO], edge: Some(edge) }
     }
 
     /// Into the face on one of the sides of an edge, or along it.
@@ -89,7 +91,7 @@ impl SurfaceEnergy<'_> {
 
     /// The ways from a corner of the target: along either edge, and down the slope of the face where that lies between.
     fn ways(&self, map: &[Placed], vertex: Vertex, corner: Corner) -> Vec<Way> {
-        let location = at_corner(corner);
+        let location = Location::at_corner(corner);
         // the edge to the next corner is opposite to the one before
         let [first, second] = [corner.next().next(), corner.next()];
         let [along, inward] = self.target.edge_frame(first);
@@ -121,13 +123,6 @@ impl SurfaceEnergy<'_> {
         }
         slopes
     }
-}
-
-/// The place at a corner.
-fn at_corner(corner: Corner) -> Location {
-    let mut barycentric = [0.0; 3];
-    barycentric[corner.place()] = 1.0;
-    Location { triangle: corner.face(), barycentric }
 }
 
 #[cfg(test)]
@@ -276,7 +271,7 @@ mod tests {
         let center = energy.target.faces()[here.triangle][at];
         let mut slopes = Vec::new();
         for &corner in energy.target.mesh().vertex_corners(center) {
-            let location = at_corner(corner);
+            let location = Location::at_corner(corner);
             let [x, y] = energy.target.frame(corner.face());
             for k in 0..60 {
                 let (sine, cosine) = (TAU * f64::from(k) / 60.0).sin_cos();

@@ -122,10 +122,7 @@ pub(super) fn flat_disk(n: u32) -> (TriangleMesh, Vec<Vector3>) {
 
 /// A vertex as a place in one of its faces.
 pub(super) fn at_vertex(mesh: &TriangleMesh, vertex: Vertex) -> Location {
-    let corner = mesh.vertex_corners(vertex)[0];
-    let mut barycentric = [0.0; 3];
-    barycentric[corner.place()] = 1.0;
-    Location { triangle: corner.face(), barycentric }
+    Location::at_corner(mesh.vertex_corners(vertex)[0])
 }
 
 pub(super) fn mesh(points: impl Iterator<Item = Vector3>, faces: &[[Vertex; 3]]) -> TriangleMesh {

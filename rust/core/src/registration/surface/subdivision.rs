@@ -139,15 +139,9 @@ impl<'a> Subdivision<'a> {
     ) -> Option<f64> {
         let grid = self.grid(face)?;
         let mut points = [Vector3::ZERO; MOST_NODES];
-        let mut at = corners[0].location.triangle;
-        for (node, weights) in grid.nodes.iter().enumerate() {
-            points[node] = if node < 3 {
-                corners[node].point
-            } else {
-                let place = self.place(target, corners, weights, at);
-                at = place.face;
-                place.point(target)
-            };
+        (0..3).for_each(|node| points[node] = corners[node].point);
+        for (node, _, place) in self.places(grid, target, corners) {
+            points[node] = place.point(target);
         }
         let of_part = |&(nodes, scale): &([usize; 3], f64)| {
             kind.value(gram(&part_jacobian(hats, scale, nodes.map(|node| points[node]))))
@@ -175,15 +169,11 @@ impl<'a> Subdivision<'a> {
         // 2. The places of all nodes, and their velocities in space
         let mut points = [Vector3::ZERO; MOST_NODES];
         let mut velocities = [[Vector3::ZERO; 6]; MOST_NODES];
-        let mut at = corners[0].location.triangle;
-        for (node, weights) in grid.nodes.iter().enumerate() {
-            if node < 3 {
-                points[node] = corners[node].point;
-                (0..2).for_each(|d| velocities[node][2 * node + d] = frames[node][d]);
-                continue;
-            }
-            let place = self.place(target, corners, weights, at);
-            at = place.face;
+        for node in 0..3 {
+            points[node] = corners[node].point;
+            (0..2).for_each(|d| velocities[node][2 * node + d] = frames[node][d]);
+        }
+        for (node, weights, place) in self.places(grid, target, corners) {
             points[node] = place.point(target);
             velocities[node] =
                 std::array::from_fn(|i| place.velocity(target, points[node], pushed[i] * weights[i / 2]));
@@ -197,6 +187,21 @@ impl<'a> Subdivision<'a> {
             sum.add(1.0 / grid.parts.len() as f64, &kind.expansion_along(&jacobian, &changes));
         }
         Some(sum)
+    }
+
+    /// The nodes of a grid besides the corners, with their weights and places, each found by a walk from the last.
+    fn places<'s>(
+        &'s self,
+        grid: &'s Grid,
+        target: &'s Target<'_>,
+        corners: [&'s Placed; 3],
+    ) -> impl Iterator<Item = (usize, &'s [f64; 3], Place)> {
+        let mut at = corners[0].location.triangle;
+        grid.nodes.iter().enumerate().skip(3).map(move |(node, weights)| {
+            let place = self.place(target, corners, weights, at);
+            at = place.face;
+            (node, weights, place)
+        })
     }
 
     /// The place on the target of a combination of corners in the domain.

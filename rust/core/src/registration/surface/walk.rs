@@ -70,7 +70,7 @@ impl Target<'_> {
     /// The place reached by a walk along the edge opposite to a corner, which ends at its ends.
     pub(super) fn walked_along_edge(&self, start: Location, edge: Corner, distance: f64) -> Location {
         let [from, to] = edge.half_edge(self.faces()).map(|vertex| self.points[vertex]);
-        let t = start.barycentric[(edge.place() + 2) % 3] + distance / from.distance(to);
+        let t = self.parameter(edge, &start) + distance / from.distance(to);
         Location::on_edge(edge, t.clamp(0.0, 1.0))
     }
 
@@ -101,7 +101,7 @@ impl Target<'_> {
         Location::on_edge(corner, t.clamp(0.0, 1.0))
     }
 
-    /// The share of a boundary edge that lies before a place on it.
+    /// The share of an edge that lies before a place on it.
     fn parameter(&self, corner: Corner, place: &Location) -> f64 {
         if place.triangle == corner.face() { place.barycentric[(corner.place() + 2) % 3] } else { 0.0 }
     }

@@ -30,12 +30,13 @@ def opened(path):
 FILES = [opened(path) for path in SAVED]
 
 
+@atheris.instrument_func
 def changed(data, array):
     """An array with a value, a length, a shape or a type of another kind."""
     array, kind = array.copy(), data.ConsumeIntInRange(0, 4)
     if kind == 0 and array.size and array.dtype.kind in "iuf":
         values = NUMBERS if array.dtype.kind in "iu" else REALS
-        with np.errstate(all="ignore"), contextlib.suppress(OverflowError):
+        with np.errstate(all="ignore"), contextlib.suppress(OverflowError, ValueError):
             array.flat[data.ConsumeIntInRange(0, array.size - 1)] = data.PickValueInList(list(values))
     elif kind == 1 and array.ndim:
         return array[: data.ConsumeIntInRange(0, len(array))]

@@ -284,10 +284,15 @@ fn alone(outline: &Outline, options: &PackOptions) -> Arrangement {
 
 /// An arrangement scaled into the unit square without a margin around it.
 fn in_unit_square(arrangement: &Arrangement, &PackOptions { margin, aspect, .. }: &PackOptions) -> Packing {
-    let gap = margin.gap(arrangement.side);
-    let scale = 1.0 / (arrangement.side + 2.0 * gap);
-    let places = arrangement.places.iter().map(|&Placed { angle, offset }| {
-        let offset = offset.map(|x| scale * (gap + x));
+    let Arrangement { side, places } = arrangement;
+    let gap = margin.gap(*side);
+    let whole = side + 2.0 * gap;
+    // What rounding may add to a coordinate: the more, the farther an island is moved.
+    let farthest = places.iter().flat_map(|place| place.offset).fold(*side, |most, x| most.max(x.abs()));
+    let rounding = (8.0 * f64::EPSILON * farthest / whole).min(0.25);
+    let scale = (1.0 - 2.0 * rounding) / whole;
+    let places = places.iter().map(|&Placed { angle, offset }| {
+        let offset = offset.map(|x| rounding + scale * (gap + x));
         Place { angle, offset }
     });
     Packing { scale, aspect, places: places.collect() }

@@ -216,6 +216,29 @@ fn one_island_lies_in_the_smallest_square() {
 }
 
 #[test]
+fn no_rounding_leads_out_of_the_square() {
+    let mut random = Random::new(11);
+    for k in 0..400 {
+        let distance = random.of_any_size(1.0, 1e6);
+        let n = if k % 10 == 0 { 3 } else { 1 };
+        let mut shapes: Vec<Shape> = (0..n)
+            .map(|_| rectangle([random.of_any_size(0.1, 1.0), 1.0], random.between(0.0, TAU)))
+            .collect();
+        for point in shapes.iter_mut().flat_map(|shape| &mut shape.points) {
+            *point = point.map(|x| x + distance);
+        }
+        let rotation = [Rotation::Fixed, Rotation::Cardinal, Rotation::Free][k % 3];
+        let options = PackOptions { margin: Margin::OfSquare(0.0), rotation, ..PackOptions::default() };
+        let packing = packed(&shapes, &options).unwrap();
+        let points: Vec<Point> =
+            placed(&shapes, &packing).into_iter().flat_map(|shape| shape.points).collect();
+        assert!(points.as_flattened().iter().all(|x| (0.0..=1.0).contains(x)), "{k}: {points:?}");
+        let most = points.as_flattened().iter().copied().fold(0.0, f64::max);
+        assert!(n > 1 || most > 1.0 - 1e-8, "{k}: only up to {most}");
+    }
+}
+
+#[test]
 fn islands_keep_their_shapes_on_a_wide_or_a_high_texture() {
     for aspect in [2.0, 0.5] {
         let options = PackOptions { margin: Margin::OfSquare(0.01), aspect, ..PackOptions::default() };

@@ -21,10 +21,10 @@ const INNERMOST: usize = 8;
 /// The least number of vertices of a ring.
 const FEWEST: usize = 5;
 
-/// Faces of a filling are no smaller than this, relative to the square of their longest edge.
+/// Faces of a membrane are to be no smaller than this, relative to the square of their longest edge.
 const THINNEST: f64 = 1e-3;
 
-/// Fills one hole by rings of vertices, or by a cone where those would have faces without area.
+/// Fills one hole by rings of vertices, or by a cone where those would have thin faces and its own are thicker.
 pub(crate) fn membrane(hole: &[Vertex], points: &mut Vec<Vector3>, faces: &mut Vec<[Vertex; 3]>) {
     let (n_points, n_faces) = (points.len(), faces.len());
     // 1. Rings that grow coarser, and the middle
@@ -34,18 +34,23 @@ pub(crate) fn membrane(hole: &[Vertex], points: &mut Vec<Vector3>, faces: &mut V
     let middle = Vertex::new(n_points + n_added - 1);
     faces.extend(cone(&rings[rings.len() - 1], middle));
     // 2. Each vertex the mean of its neighbors
+    let mut thickness = 0.0;
     if let Some(places) = places(n_points, n_added, &faces[n_faces..], points) {
         points.extend(places);
-        if faces[n_faces..].iter().all(|face| is_fat(face.map(|vertex| points[vertex]))) {
-            return;
-        }
+        thickness = thinnest(faces[n_faces..].iter().map(|face| face.map(|vertex| points[vertex])));
+    }
+    if thickness > THINNEST {
+        return;
     }
     // 3. Or a cone
-    points.truncate(n_points);
-    faces.truncate(n_faces);
     let rim: Vec<Vector3> = hole.iter().map(|&vertex| points[vertex]).collect();
-    points.push(apex_of(&rim));
-    faces.extend(cone(hole, Vertex::new(n_points)));
+    let apex = apex_of(&rim);
+    if thinnest((0..rim.len()).map(|k| [rim[k], rim[(k + 1) % rim.len()], apex])) >= thickness {
+        points.truncate(n_points);
+        faces.truncate(n_faces);
+        points.push(apex);
+        faces.extend(cone(hole, Vertex::new(n_points)));
+    }
 }
 
 /// The faces between a loop, which has the surface on its left, and the tip of a cone on its right.
@@ -55,8 +60,17 @@ pub(crate) fn cone(hole: &[Vertex], apex: Vertex) -> impl Iterator<Item = [Verte
 
 /// Whether a face is no thinner than those of fillings may be.
 pub(crate) fn is_fat(corners: [Vector3; 3]) -> bool {
+    thickness(corners) > THINNEST
+}
+
+fn thinnest(faces: impl Iterator<Item = [Vector3; 3]>) -> f64 {
+    faces.map(thickness).fold(f64::INFINITY, f64::min)
+}
+
+/// Area relative to the square of the longest edge; 0 where all corners coincide.
+fn thickness(corners: [Vector3; 3]) -> f64 {
     let longest = edge_lengths(corners).into_iter().fold(0.0, f64::max);
-    area(corners.map(|x| x * (1.0 / longest))) > THINNEST
+    area(corners.map(|x| x * (1.0 / longest))).max(0.0)
 }
 
 /// The hole and the rings inside, of vertices numbered from `first`.

@@ -29,7 +29,9 @@ def _whole(*steps: str) -> Selection:
 
 # The first pattern that fits a file counts (`*` also stands for slashes); {file} is the file itself.
 _RULES: tuple[tuple[str, Selection], ...] = (
-    ("rust/fuzz/*", {}),
+    ("rust/fuzz/fuzz_targets/*", {}),
+    ("rust/fuzz/Cargo.*", {}),
+    ("rust/fuzz/*", _whole("rustfmt", "clippy", "rust")),
     ("rust/web/page/*", {"python": STRUCTURE}),
     ("rust/web/Cargo.lock", {"web": (), "python": PROJECT}),
     ("rust/web/*", {"web": (), "python": STRUCTURE}),

@@ -1,35 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Construction: any arrays are a surface or an error that names elements there are.
+//! Runs `mesh` of the library, which says what it looks for.
 #![no_main]
 
-use authalic::Surface;
-use authalic_fuzz::Input;
-use libfuzzer_sys::fuzz_target;
-
-fuzz_target!(|bytes: &[u8]| {
-    let (vertices, faces) = Input::new(bytes).arrays();
-    let (n, m) = (vertices.nrows(), faces.nrows());
-    let surface = match Surface::new(vertices.view(), faces.view()) {
-        Ok(surface) => surface,
-        Err(error) => return assert!(!error.to_string().is_empty()),
-    };
-    assert_eq!((surface.n_vertices(), surface.n_faces()), (n, m));
-    match surface.topology() {
-        Ok(topology) => {
-            assert!(topology.is_disk() as u8 + topology.is_closed() as u8 <= 1);
-            let oriented = surface.oriented_faces().expect("a surface with a topology");
-            // Each edge is passed at most once in each direction.
-            let mut passed = std::collections::BTreeSet::new();
-            for face in oriented.rows() {
-                for (a, b) in [(0, 1), (1, 2), (2, 0)] {
-                    assert!(passed.insert([face[a], face[b]]), "an edge is passed twice");
-                }
-            }
-        }
-        Err(error) => {
-            let elements = error.elements().map_or(&[][..], |elements| &elements.first);
-            assert!(elements.iter().all(|&index| index < n.max(m)), "{error}");
-            assert!(!error.to_string().is_empty());
-        }
-    }
-});
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| authalic_fuzz::mesh::check(bytes));

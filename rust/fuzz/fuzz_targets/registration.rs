@@ -1,57 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Registrations by points: places on the target and no folds but in those that say they have not converged, or an error.
+//! Runs `registration` of the library, which says what it looks for.
 #![no_main]
 
-use authalic::{Correspondence, Distortion, Energy, Error, Landmarks, RegistrationOptions, Status};
-use authalic::{register_disks, register_spheres};
-use authalic_fuzz::Input;
-use libfuzzer_sys::fuzz_target;
-
-fuzz_target!(|bytes: &[u8]| {
-    let mut input = Input::new(bytes);
-    let weights: Vec<f64> = (0..6).map(|_| input.option([1.0, 10.0, f64::INFINITY]).unwrap_or(1.0)).collect();
-    let is_soft = input.bit();
-    let mut options = RegistrationOptions {
-        energy: if input.bit() { Energy::Surface } else { Energy::Area },
-        weight: input.option([0.1, 1.0, 100.0]).unwrap_or(1.0),
-        angle_weight: input.option([0.0, 1.0, 10.0]),
-        area_weight: input.option([0.0, 1.0, 3.0]).unwrap_or(1.0),
-        position_weight: input.option([0.0, 1.0, 10.0]).unwrap_or(0.0),
-        fill_holes: input.bit(),
-        ..Default::default()
-    };
-    let is_closed = input.bit();
-    let mut observer = input.patience();
-    let (Some(source), Some(target)) = (input.surface(3), input.surface(3)) else { return };
-    let count = input.below(6);
-    let [sources, targets] = [&source, &target]
-        .map(|side| (0..count).map(|_| input.below(side.n_vertices() + 1)).collect::<Vec<_>>());
-    options.weights = is_soft.then_some(&weights[..count]);
-    let landmarks = Landmarks { source: &sources, target: &targets };
-    let result = if is_closed {
-        let result = register_spheres(&source, &target, &landmarks, &options, &mut observer);
-        result.map(|found| (found.correspondence, found.distortion, found.status))
-    } else {
-        let result = register_disks(&source, &target, &landmarks, &options, &mut observer);
-        result.map(|found| (found.correspondence, found.distortion, found.status))
-    };
-    check(result);
-});
-
-fn check(result: Result<(Correspondence, Distortion, Status), Error>) {
-    let Ok((map, distortion, status)) = result else { return };
-    assert!(map.positions().iter().all(|x| x.is_finite()), "positions that are no numbers");
-    let n_faces = map.target_faces().nrows();
-    assert!(map.triangles().iter().all(|&triangle| triangle < n_faces));
-    for weights in map.barycentric().rows() {
-        assert!(
-            (weights.sum() - 1.0).abs() < 1e-9 && weights.iter().all(|&weight| weight >= 0.0),
-            "{weights}"
-        );
-    }
-    assert!(
-        distortion.folded.is_empty() || status != Status::Converged,
-        "{status:?}, but folded: {:?}",
-        distortion.folded
-    );
-}
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| authalic_fuzz::registration::check(bytes));

@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Meshes and options out of the bytes of a fuzzer.
+//! The targets of the fuzzer, and meshes and options out of its bytes.
 //!
 //! Bytes first choose a sound surface, then change it step by step, so that both sound and broken meshes are common.
+//! The tests of the crate include this file too: they run all targets on the inputs in `corpus/`, without a fuzzer.
+
+pub mod cut;
+pub mod disk_map;
+pub mod mesh;
+pub mod registration;
+pub mod repair;
+pub mod seams;
+pub mod sphere_map;
 
 use authalic::Surface;
 use ndarray::{Array2, aview2};
@@ -11,6 +20,17 @@ const MOST_VERTICES: usize = 120;
 
 type Vertices = Vec<[f64; 3]>;
 type Faces = Vec<[u32; 3]>;
+
+/// The targets by their names, which their folders in `corpus/` have too.
+pub const TARGETS: [(&str, fn(&[u8])); 7] = [
+    ("cut", cut::check),
+    ("disk_map", disk_map::check),
+    ("mesh", mesh::check),
+    ("registration", registration::check),
+    ("repair", repair::check),
+    ("seams", seams::check),
+    ("sphere_map", sphere_map::check),
+];
 
 /// The bytes that are left; zeros behind their end.
 pub struct Input<'a>(&'a [u8]);

@@ -7,6 +7,7 @@ mod cut;
 mod disk;
 mod embedding;
 mod energy;
+mod fuzzing;
 mod gauss_newton;
 mod gauss_newton_runs;
 mod hyperbolic;

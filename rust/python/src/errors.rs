@@ -95,6 +95,7 @@ pub fn to_python(py: Python<'_>, error: &Error) -> PyErr {
 /// The message of an error, with the argument of Python that avoids it.
 fn in_python_words(error: &Error) -> String {
     let hint = match error {
+        error if error.is_mended_by_repair() => Some("authalic.repair mends this"),
         Error::Mesh(inner) => hint(inner),
         Error::OfSurface { error: inner, .. } => match &**inner {
             Error::Mesh(
@@ -115,7 +116,7 @@ fn in_python_words(error: &Error) -> String {
     hint.map_or_else(|| error.to_string(), |hint| format!("{error} ({hint})"))
 }
 
-/// What mends a mesh in Python.
+/// What mends a mesh in Python, where `repair` by itself does not.
 fn hint(error: &authalic::MeshError) -> Option<&'static str> {
     use authalic::MeshError as Of;
     match error {
@@ -126,13 +127,6 @@ fn hint(error: &authalic::MeshError) -> Option<&'static str> {
         Of::NoMainPiece { .. } => {
             Some("repair takes merge=distance and keep=\"largest\", cut returns the pieces")
         }
-        Of::NonFinite { .. }
-        | Of::RepeatedVertex { .. }
-        | Of::DuplicateFaces { .. }
-        | Of::ZeroArea { .. }
-        | Of::NonManifoldEdges { .. }
-        | Of::NonManifoldVertices { .. }
-        | Of::UnreferencedVertices { .. } => Some("authalic.repair mends this"),
         Of::ClosedSurface { .. }
         | Of::HasHandles { .. }
         | Of::SphereHasHandles { .. }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What is wrong with a file or a mesh, in the words of the Python package.
 
-use authalic::{Error, MeshError};
+use authalic::Error;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// A problem, and whether *Repair first* mends it.
@@ -44,22 +44,7 @@ impl Problem {
 
 impl From<Error> for Problem {
     fn from(error: Error) -> Self {
-        let is_mendable = matches!(&error, Error::Mesh(error) if mends(error));
-        Self { message: error.to_string(), kind: error.kind().as_str().into(), is_mendable }
+        let (kind, is_mendable) = (error.kind().as_str().into(), error.is_mended_by_repair());
+        Self { message: error.to_string(), kind, is_mendable }
     }
-}
-
-/// Whether a repair mends this. The package's exceptions say so by "authalic.repair mends this".
-fn mends(error: &MeshError) -> bool {
-    use MeshError as Of;
-    matches!(
-        error,
-        Of::NonFinite { .. }
-            | Of::RepeatedVertex { .. }
-            | Of::DuplicateFaces { .. }
-            | Of::ZeroArea { .. }
-            | Of::NonManifoldEdges { .. }
-            | Of::NonManifoldVertices { .. }
-            | Of::UnreferencedVertices { .. }
-    )
 }

@@ -263,6 +263,20 @@ impl MeshError {
         }
     }
 
+    /// Whether [`repair`](crate::repair()) takes the fault away by its default options, where that leaves any face.
+    pub(super) fn is_mended_by_repair(&self) -> bool {
+        matches!(
+            self,
+            Self::NonFinite { .. }
+                | Self::RepeatedVertex { .. }
+                | Self::DuplicateFaces { .. }
+                | Self::ZeroArea { .. }
+                | Self::NonManifoldEdges { .. }
+                | Self::NonManifoldVertices { .. }
+                | Self::UnreferencedVertices { .. }
+        )
+    }
+
     /// The error with other numbers for the vertices and faces at fault.
     pub(super) fn renumbered(
         mut self,

@@ -179,6 +179,29 @@ impl Error {
         }
     }
 
+    /// Whether [`repair`](crate::repair()) takes the fault away by its default options, where that leaves any face.
+    ///
+    /// ```
+    /// use authalic::{RepairOptions, Surface, repair};
+    /// use ndarray::array;
+    ///
+    /// // the second triangle is the first one again
+    /// let vertices = array![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]];
+    /// let mut surface = Surface::new(&vertices, array![[0, 1, 2], [1, 2, 0]])?;
+    /// if surface.topology().is_err_and(|error| error.is_mended_by_repair()) {
+    ///     surface = repair(surface.vertices(), surface.faces(), &RepairOptions::default())?.surface;
+    /// }
+    /// assert_eq!(surface.faces(), array![[0, 1, 2]]);
+    /// # Ok::<(), authalic::Error>(())
+    /// ```
+    pub fn is_mended_by_repair(&self) -> bool {
+        match self {
+            Self::Mesh(error) => error.is_mended_by_repair(),
+            Self::OfSurface { error, .. } => error.is_mended_by_repair(),
+            _ => false,
+        }
+    }
+
     /// The error of a computation with other numbers for the faces at fault.
     pub(crate) fn with_faces(self, face_of: impl Fn(usize) -> usize) -> Self {
         match self {
@@ -237,6 +260,17 @@ mod tests {
         let curve = Error::from(CurveError::NoArc { curve: Some(2) }).of_surface(Side::Source);
         assert_eq!((curve.side(), curve.curve(), curve.second_curve()), (Some(Side::Source), Some(2), None));
         assert_eq!(Error::CancelledEarly.of_surface(Side::Source), Error::CancelledEarly);
+    }
+
+    #[test]
+    fn a_repair_mends_faults_of_elements_and_none_of_the_shape() {
+        let few = || Elements::collect([1usize]).unwrap();
+        let mended = Error::from(MeshError::ZeroArea { faces: few() });
+        assert!(mended.is_mended_by_repair() && mended.of_surface(Side::Source).is_mended_by_repair());
+        for kept in [MeshError::NotOrientable { edges: few() }, MeshError::ClosedSurface { genus: 0 }] {
+            assert!(!Error::from(kept).is_mended_by_repair());
+        }
+        assert!(!Error::CancelledEarly.is_mended_by_repair());
     }
 
     #[test]

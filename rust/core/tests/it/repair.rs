@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Repairs: sound meshes stay as they are, and any triangles become an oriented manifold.
 
-use authalic::{CloseHandles, CloseHoles, Error, Keep, MeshError, RepairOptions, Repaired, repair};
+use authalic::{CloseHandles, CloseHoles, Error, Keep, MeshError, RepairOptions, Repaired, Surface, repair};
 use ndarray::{Array2, aview2};
 use proptest::prelude::*;
 
@@ -52,6 +52,29 @@ fn arrays_that_are_no_mesh_are_refused() {
     assert!(matches!(refused(&[[0, 1, 3]]), Error::Mesh(MeshError::IndexOutOfRange { value: 3, .. })));
     let flat = repair(Array2::zeros((3, 2)), ndarray::array![[0, 1, 2]], &options);
     assert!(matches!(flat, Err(Error::InvalidArray { name: "vertices", .. })));
+}
+
+#[test]
+fn a_repair_mends_every_fault_that_says_so_and_no_other() {
+    let strip = common::moebius_strip(10, 3);
+    let [a, b, c, d, e] = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.], [1., 1., 1.]];
+    let meshes: [(&str, Vec<[f64; 3]>, Vec<[u32; 3]>, bool); 8] = [
+        ("not_finite", vec![a, b, c, [f64::NAN, 0., 0.]], vec![[0, 1, 2], [1, 3, 2]], true),
+        ("repeated_vertex", vec![a, b, c], vec![[0, 1, 2], [0, 1, 1]], true),
+        ("duplicate_face", vec![a, b, c], vec![[0, 1, 2], [2, 0, 1]], true),
+        ("zero_area", vec![a, b, c, [0.5, 0.5, 0.]], vec![[0, 1, 2], [1, 3, 2]], true),
+        ("non_manifold_edge", vec![a, b, c, d, e], vec![[0, 1, 2], [1, 0, 3], [0, 1, 4]], true),
+        ("non_manifold_vertex", vec![a, b, c, d, e], vec![[0, 1, 2], [0, 3, 4]], true),
+        ("loose_vertex", vec![a, b, c, d], vec![[0, 1, 2]], true),
+        ("not_orientable", strip.vertices, strip.faces, false),
+    ];
+    for (kind, vertices, faces, mended) in meshes {
+        let given = Surface::new(aview2(&vertices), aview2(&faces));
+        let error = given.and_then(|surface| surface.topology().map(drop)).unwrap_err();
+        assert_eq!((error.kind().as_str(), error.is_mended_by_repair()), (kind, mended));
+        let repaired = repaired(&vertices, &faces, &RepairOptions::default()).unwrap();
+        assert_eq!(repaired.surface.topology().is_ok(), mended, "{kind}");
+    }
 }
 
 proptest! {

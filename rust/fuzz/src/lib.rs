@@ -21,8 +21,11 @@ const MOST_VERTICES: usize = 120;
 type Vertices = Vec<[f64; 3]>;
 type Faces = Vec<[u32; 3]>;
 
+/// The name of a target, and one run of it on some bytes.
+pub type Target = (&'static str, fn(&[u8]));
+
 /// The targets by their names, which their folders in `corpus/` have too.
-pub const TARGETS: [(&str, fn(&[u8])); 7] = [
+pub const TARGETS: [Target; 7] = [
     ("cut", cut::check),
     ("disk_map", disk_map::check),
     ("mesh", mesh::check),

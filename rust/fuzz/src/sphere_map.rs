@@ -20,7 +20,7 @@ pub fn check(bytes: &[u8]) {
         angle_weight: input.option([1e-3, 0.1, 10.0]).unwrap_or(0.0),
         area_tolerance: input.option([0.05, 0.2, 0.01]),
         max_iterations: Some(input.below(20)),
-        refine: input.byte() % 8 == 0,
+        refine: input.byte().is_multiple_of(8),
         ..Default::default()
     };
     let mut observer = input.patience();

@@ -12,7 +12,7 @@ fn inputs_that_made_a_target_fail_do_so_no_more() {
     let folders = entries(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/corpus"));
     assert!(!folders.is_empty());
     for folder in folders {
-        let is_of = |(name, _): &&(&str, fn(&[u8]))| folder.ends_with(name);
+        let is_of = |(name, _): &&targets::Target| folder.ends_with(name);
         let (_, check) = targets::TARGETS.iter().find(is_of).expect("a target with the name of the folder");
         for file in entries(&folder) {
             println!("{}", file.display());

@@ -54,11 +54,14 @@ fn arrays_that_are_no_mesh_are_refused() {
     assert!(matches!(flat, Err(Error::InvalidArray { name: "vertices", .. })));
 }
 
+/// The kind of a fault, the vertices and faces that have it, and whether a repair mends it.
+type FaultyMesh = (&'static str, Vec<[f64; 3]>, Vec<[u32; 3]>, bool);
+
 #[test]
 fn a_repair_mends_every_fault_that_says_so_and_no_other() {
     let strip = common::moebius_strip(10, 3);
     let [a, b, c, d, e] = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.], [1., 1., 1.]];
-    let meshes: [(&str, Vec<[f64; 3]>, Vec<[u32; 3]>, bool); 8] = [
+    let meshes: [FaultyMesh; 8] = [
         ("not_finite", vec![a, b, c, [f64::NAN, 0., 0.]], vec![[0, 1, 2], [1, 3, 2]], true),
         ("repeated_vertex", vec![a, b, c], vec![[0, 1, 2], [0, 1, 1]], true),
         ("duplicate_face", vec![a, b, c], vec![[0, 1, 2], [2, 0, 1]], true),

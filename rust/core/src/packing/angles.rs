@@ -5,6 +5,9 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::outline::Point;
 
+/// Angles, and sizes in parts of themselves, that differ by less are equal but for rounding.
+const EQUAL: f64 = 1e-9;
+
 /// The point turned by the angle whose cosine and sine are given.
 pub(super) fn turned(point: Point, [cos, sin]: [f64; 2]) -> Point {
     [cos * point[0] - sin * point[1], sin * point[0] + cos * point[1]]
@@ -91,13 +94,15 @@ fn equal_sides(hull: &[Point], aspect: f64, from: f64, to: f64) -> Option<f64> {
     (-2..=2).map(|k| angle + f64::from(k) * 2.0 * FRAC_PI_2).find(|angle| (from..=to).contains(angle))
 }
 
-/// The angles in [0, π/2) by which an edge of the hull comes to lie upright or level, sorted; at least one.
+/// The angles by which an edge of the hull comes to lie upright or level, sorted; at least one.
+///
+/// They are below a right angle by more than rounding, or an edge that lies level would be turned or not by chance.
 fn flush_angles(hull: &[Point]) -> Vec<f64> {
     let next = hull.iter().cycle().skip(1);
     let mut angles: Vec<f64> = hull
         .iter()
         .zip(next)
-        .map(|(a, b)| (-(b[1] - a[1]).atan2(b[0] - a[0])).rem_euclid(FRAC_PI_2))
+        .map(|(a, b)| (-(b[1] - a[1]).atan2(b[0] - a[0]) + EQUAL).rem_euclid(FRAC_PI_2) - EQUAL)
         .chain(hull.is_empty().then_some(0.0))
         .collect();
     angles.sort_unstable_by(f64::total_cmp);
@@ -105,10 +110,12 @@ fn flush_angles(hull: &[Point]) -> Vec<f64> {
     angles
 }
 
-/// The first of the angles with the least value.
-fn least(angles: &[f64], value: impl Fn(f64) -> f64) -> f64 {
+/// The first of the angles with the least value but for rounding, which has no say among a box and its quarter turns.
+pub(super) fn least(angles: &[f64], value: impl Fn(f64) -> f64) -> f64 {
     let values = angles.iter().map(|&angle| (value(angle), angle));
-    values.reduce(|best, next| if next.0 < best.0 { next } else { best }).map_or(0.0, |(_, angle)| angle)
+    let lower =
+        |best: (f64, f64), next: (f64, f64)| if next.0 < best.0 * (1.0 - EQUAL) { next } else { best };
+    values.reduce(lower).map_or(0.0, |(_, angle)| angle)
 }
 
 #[cfg(test)]
@@ -128,7 +135,10 @@ mod tests {
             let side = |angle: f64| turned_size(&hull, angle, aspect).into_iter().fold(0.0, f64::max);
             let best = side(square_angle(&hull, aspect));
             let sampled = (0..9000).map(|k| side(f64::from(k) * 1e-4 * TAU)).fold(f64::INFINITY, f64::min);
-            assert!(best <= sampled + 1e-12 && best > sampled - 1e-3, "{seed}: {best} {sampled}");
+            assert!(
+                best <= sampled * (1.0 + EQUAL) + 1e-12 && best > sampled - 1e-3,
+                "{seed}: {best} {sampled}"
+            );
         }
     }
 
@@ -145,5 +155,26 @@ mod tests {
         let hull = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]].map(|point| turned(point, [cos, sin]));
         let size = turned_size(&hull, angles_around(&hull, 4)[0], 1.0);
         assert!((size[0] * size[1] - 3.0).abs() < 1e-12);
+    }
+
+    /// The corners of a hull, each moved by rounding.
+    fn rounded(hull: &[Point], seed: u32) -> Vec<Point> {
+        let number = |k: usize| (k as f64 * 78.233 + f64::from(seed) * 12.9898).sin() * 43758.5453 % 1.0;
+        let moved =
+            |(k, &[x, y]): (usize, &Point)| [x + 1e-15 * number(2 * k), y + 1e-15 * number(2 * k + 1)];
+        hull.iter().enumerate().map(moved).collect()
+    }
+
+    #[test]
+    fn rounding_does_not_choose_between_angles() {
+        let level = vec![[0.0, 0.0], [2.0, 0.0], [1.5, 1.0], [0.0, 1.0]];
+        for hull in (0..10).map(scattered).chain([level]) {
+            let [square, smallest] = [square_angle(&hull, 1.0), least_box_angle(&hull)];
+            for seed in 0..30 {
+                let hull = rounded(&hull, seed);
+                assert!((square_angle(&hull, 1.0) - square).abs() < 1e-12, "{seed}");
+                assert!((least_box_angle(&hull) - smallest).abs() < 1e-12, "{seed}");
+            }
+        }
     }
 }

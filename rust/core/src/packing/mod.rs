@@ -34,7 +34,7 @@ use std::f64::consts::FRAC_PI_2;
 use crate::control::{Observer, Watch};
 use crate::error::Error;
 use crate::parallel;
-use angles::{angles_around, direction, flattened, square_angle, turned, turned_box, turned_size};
+use angles::{angles_around, direction, flattened, least, square_angle, turned, turned_box, turned_size};
 use blocks::{MANY, Piece};
 pub use margin::Margin;
 pub use outline::Island;
@@ -268,13 +268,9 @@ fn longer_side(hull: &[Point], angle: f64, aspect: f64) -> f64 {
 fn alone(outline: &Outline, options: &PackOptions) -> Arrangement {
     let angle = match options.rotation {
         Rotation::Fixed => 0.0,
-        Rotation::Cardinal => [0.0, FRAC_PI_2]
-            .into_iter()
-            .min_by(|&a, &b| {
-                let side = |angle| longer_side(&outline.hull, angle, options.aspect);
-                side(a).total_cmp(&side(b))
-            })
-            .unwrap_or(0.0),
+        Rotation::Cardinal => {
+            least(&[0.0, FRAC_PI_2], |angle| longer_side(&outline.hull, angle, options.aspect))
+        }
         Rotation::Free => square_angle(&outline.hull, options.aspect),
     };
     let [corner, _] = turned_box(&outline.hull, angle, options.aspect);

@@ -48,4 +48,4 @@ def _libraries(platform: Platform, wheel: Path, log: Path) -> list[str]:
         [name] = [name for name in archive.namelist() if re.search(r"/_native\.[\w.-]*(so|pyd)$", name)]
         module = Path(archive.extract(name, str(wheel.parent)))
     headers = run_inside([f"{platform.tools}objdump", "-p", module], log)
-    return sorted(re.findall(r"(?m)^\s*(?:DLL Name:|NEEDED)\s+(\S+)$", headers))
+    return sorted(set(re.findall(r"(?m)^\s*(?:DLL Name:|NEEDED)\s+(\S+)$", headers)))

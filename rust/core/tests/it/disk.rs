@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Disk maps by their properties, on every test mesh that is a disk.
 
+use crate::common::cancelling::{CancelAt, count_reports};
 use crate::common::public::{disk_map, planar};
 use authalic::testing::{TriangleMesh, doubled_area, folded_in_plane};
 use authalic::{
@@ -195,22 +196,13 @@ fn a_cancelled_run_returns_a_sound_map() {
     let mesh = common::bumpy_disk(12).mesh();
     for method in METHODS {
         let options = DiskMapOptions { method, ..Default::default() };
-        let mut reports = 0;
-        let mut count = |_: f64, _: &str| {
-            reports += 1;
-            true
-        };
-        disk_map(&mesh, &options, &mut count).unwrap();
+        let reports = count_reports(|observer| disk_map(&mesh, &options, observer).unwrap());
         // the last report tells that the run is done
         for after in 0..reports - 1 {
-            let mut calls = 0;
-            let mut observer = |fraction: f64, _: &str| {
-                assert!((0.0..=1.0).contains(&fraction));
-                calls += 1;
-                calls <= after
-            };
+            let mut observer = CancelAt::after(after);
             let map = disk_map(&mesh, &options, &mut observer).unwrap();
-            assert_eq!((map.status, calls), (Status::Cancelled, after + 1), "{method:?}");
+            assert_eq!(map.status == Status::Cancelled, observer.has_cancelled, "{method:?} after {after}");
+            assert!(!observer.asks_again);
             assert_bijective(&mesh, &map);
         }
     }

@@ -2,6 +2,7 @@
 //! How a run of the default method goes and ends: energies, angles against areas, densities, start maps, cancel,
 //! threads, and that neither place, size nor numbering of a surface matters.
 
+use crate::common::cancelling::{CancelAt, count_reports};
 use crate::common::closed::{
     assert_bijective, bumpy, dot, image_areas, radial, rotation, round_tube, spiky_spheres,
 };
@@ -318,24 +319,15 @@ fn cancelled_everywhere<T>(
     run: impl Fn(&mut dyn authalic::Observer) -> Result<T, Error>,
     check: impl Fn(&T) -> Status,
 ) {
-    let mut heard = vec![0.0];
-    let mut listen = |fraction: f64, message: &str| {
-        assert!((0.0..=1.0).contains(&fraction) && !message.is_empty());
-        heard.push(fraction);
-        true
-    };
-    check(&run(&mut listen).expect("a map"));
-    assert_eq!(heard.last(), Some(&1.0));
+    let reports = count_reports(|observer| check(&run(observer).expect("a map")));
     // the last report tells that the run is done
-    for last in 0..heard.len() - 2 {
-        let mut calls = 0;
-        let mut observer = |_: f64, _: &str| {
-            calls += 1;
-            calls <= last
-        };
+    for last in 0..reports - 1 {
+        let mut observer = CancelAt::after(last);
         match run(&mut observer) {
-            Ok(map) => assert_eq!(check(&map), Status::Cancelled),
-            Err(error) => assert!(matches!(error, Error::CancelledEarly), "{error}"),
+            Ok(map) => assert_eq!(check(&map) == Status::Cancelled, observer.has_cancelled, "after {last}"),
+            Err(error) => {
+                assert!(matches!(error, Error::CancelledEarly) && observer.has_cancelled, "{error}")
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Registrations by their properties: no folds, landmarks on landmarks, identities, refusals, inverse.
 
+use crate::common::cancelling::CancelAt;
 use crate::common::closed::{bumpy, parallels, radial, spheres};
 use crate::common::public::{planar, spatial, triples};
 use crate::common::public::{register_disks, register_spheres};
@@ -229,17 +230,13 @@ proptest! {
     fn cancelled_runs_are_sound(seed in 0u64..1000, last in 0usize..60) {
         let (source, target) = (bumpy_disk(5).mesh(), cap(6, 1.8).mesh());
         let (ours, theirs) = (picked(&source, 4, seed), picked(&target, 4, seed + 1));
-        let mut calls = 0;
-        let mut observer = |_: f64, _: &str| {
-            calls += 1;
-            calls <= last
-        };
+        let mut observer = CancelAt::after(last);
         let landmarks = Landmarks { source: &ours, target: &theirs };
         let options = areas();
         match register_disks(&source, &target, &landmarks, &options, &mut observer) {
             Ok(found) => {
                 prop_assert!(folded_in_plane(source.faces(), planar(&found.registered)).is_empty());
-                prop_assert_eq!(found.status == Status::Cancelled, calls > last);
+                prop_assert_eq!(found.status == Status::Cancelled, observer.has_cancelled);
             }
             Err(error) => prop_assert_eq!(error, Error::CancelledEarly),
         }

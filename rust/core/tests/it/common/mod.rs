@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Meshes of known topology, made in code. Tests loop over all that qualify.
 
+pub mod cancelling;
 pub mod closed;
 pub mod planar;
 pub mod public;

@@ -89,7 +89,9 @@ impl SurfaceEnergy<'_> {
         least.course
     }
 
-    /// The ways from a corner of the target: along either edge, and down the slope of the face where that lies between.
+    /// The ways from a corner of the target: along its first edge, and down the slope of the face where that lies between
+    /// both. The second edge is the first of the next corner, where there is one: which of two sides of an edge a vertex
+    /// goes along is not left to rounding.
     fn ways(&self, map: &[Placed], vertex: Vertex, corner: Corner) -> Vec<Way> {
         let location = Location::at_corner(corner);
         // the edge to the next corner is opposite to the one before
@@ -98,10 +100,10 @@ impl SurfaceEnergy<'_> {
         let [x, y] = self.slopes(map, vertex, location, [along, inward]);
         let course = self.course_along(location, second);
         let other = course.frame[0] * -1.0;
-        let mut ways = vec![
-            Way { course: self.course_along(location, first), slope: x },
-            Way { course, slope: x * other.dot(along) + y * other.dot(inward) },
-        ];
+        let mut ways = vec![Way { course: self.course_along(location, first), slope: x }];
+        if self.target.mesh().opposite(second).is_none() {
+            ways.push(Way { course, slope: x * other.dot(along) + y * other.dot(inward) });
+        }
         // the steepest descent lies to the left of the first edge and to the right of the second
         let down = along * -x - inward * y;
         if y < 0.0 && down.cross(other).dot(along.cross(inward)) > 0.0 {

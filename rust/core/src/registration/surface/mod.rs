@@ -10,6 +10,8 @@
 //! Where the target is much finer, faces are split into parts that see what lies between their corners
 //! ([`subdivision`]), anew for each stage.
 //!
+//! Each round begins at places that are rounded, so that nearly the same input gives nearly the same map ([`rounding`]).
+//!
 //! The map is stationary where neither betters it: target edges are kinks of the energy, at which vertices come to lie
 //! with a slope on either side ([`kinks`]).
 //!
@@ -20,6 +22,7 @@ mod energy;
 mod kinks;
 mod newton;
 mod problem;
+mod rounding;
 #[cfg(test)]
 mod sample_maps;
 mod subdivision;
@@ -197,9 +200,10 @@ struct Descent<'a> {
 }
 
 impl Descent<'_> {
-    /// Rounds of steps and a sweep, until the energy hardly falls.
+    /// Rounds of steps and a sweep from rounded places, until the energy hardly falls.
     fn rounds(&mut self, moving: &mut Moving<'_, '_>, stage: &Stage) -> Status {
         for _ in 0..stage.rounds {
+            moving.round();
             let before = moving.energy.value(&moving.map);
             if self.steps(moving, stage.steps).is_err() {
                 return Status::Cancelled;

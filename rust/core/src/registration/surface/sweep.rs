@@ -23,7 +23,8 @@ const DISTORTED: f64 = 1.3;
 /// many small jumps is taken depends on rounding.
 const LEAST_GAIN: f64 = 1e-3;
 
-/// Directions and radii of the search, the factor from radius to radius, and the turn of the directions with it.
+/// Directions and radii of the search, the factor from radius to radius, and the turn of the directions with it, which
+/// begin with half of it: no walk from a place on an edge is along the edge, and of regular faces to a corner.
 const DIRECTIONS: usize = 12;
 const RADII: usize = 6;
 const SHRINKING: f64 = 0.4;
@@ -83,7 +84,7 @@ impl Moving<'_, '_> {
         let mut radius = self.first_radius(vertex);
         for ring in 0..RADII {
             for k in 0..DIRECTIONS {
-                let angle = TAU * (k as f64 + TURN * ring as f64) / DIRECTIONS as f64;
+                let angle = TAU * (k as f64 + TURN * (ring as f64 + 0.5)) / DIRECTIONS as f64;
                 let (sine, cosine) = angle.sin_cos();
                 let along = frame[0] * (radius * cosine) + frame[1] * (radius * sine);
                 let there = self.walked(vertex.index(), along, radius * cosine);

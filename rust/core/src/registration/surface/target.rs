@@ -90,13 +90,11 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// Two orthogonal unit vectors in the plane of a face.
+    /// Two orthogonal unit vectors in the plane of a face, the first along its first edge.
     pub(super) fn frame(&self, face: Face) -> [Vector3; 2] {
-        let normal = self.normals[face];
-        let shortest = if normal[0].abs() <= normal[1].abs() { 0 } else { 1 };
-        let axis = if normal[2].abs() < normal[shortest].abs() { 2 } else { shortest };
-        let first = normal.cross(Vector3::unit(axis)).normalized();
-        [first, normal.cross(first)]
+        let [a, b, _] = self.corners(face);
+        let first = (b - a).normalized();
+        [first, self.normals[face].cross(first)]
     }
 
     /// The change of the barycentric coordinates in a face along a vector in its plane.

@@ -138,7 +138,7 @@ mod tests {
     use super::*;
     use crate::codomain::CanonicalDomain;
     use crate::control::{History, Silent};
-    use crate::location::tests::octasphere;
+    use crate::location::tests::{number, octasphere};
 
     const GUARD: Guard = Guard { weight: 0.1, slack: 3.0 };
 
@@ -285,6 +285,39 @@ mod tests {
             }
         }
         slopes
+    }
+
+    #[test]
+    fn rounding_does_not_choose_the_side_of_an_edge() {
+        let sample = Sample::spheres();
+        let problem = sample.problem();
+        let energy = SurfaceEnergy::new(&problem, GUARD);
+        let map: Vec<Placed> = sample.start.iter().map(|&location| energy.target.placed(location)).collect();
+        let mut n_along = 0;
+        for vertex in Vertex::all(map.len()) {
+            // 1. At each vertex of the target to which it can move
+            let face = energy.target.faces()[map[vertex].location.triangle];
+            for center in face {
+                let mut at_center = map.clone();
+                at_center[vertex] = energy.target.placed(at_vertex(&sample.target, center));
+                let course = energy.course(&at_center, vertex);
+                if course.edge.is_none() || course.frame[0] == Vector3::ZERO {
+                    continue;
+                }
+                n_along += 1;
+                // 2. With noise at the others
+                for seed in 0..4 {
+                    let mut noisy = at_center.clone();
+                    for other in Vertex::all(map.len()).filter(|&other| other != vertex) {
+                        let noise = Vector3::from_fn(|axis| 1e-14 * number(seed + 7 * other.index() + axis));
+                        noisy[other].point = noisy[other].point + noise;
+                    }
+                    let with_noise = energy.course(&noisy, vertex);
+                    assert_eq!((with_noise.edge, with_noise.location), (course.edge, course.location));
+                }
+            }
+        }
+        assert!(n_along > 20, "{n_along}");
     }
 
     #[test]

@@ -10,7 +10,8 @@
 //! Where the target is much finer, faces are split into parts that see what lies between their corners
 //! ([`subdivision`]), anew for each stage.
 //!
-//! Each round begins at places that are rounded, so that nearly the same input gives nearly the same map ([`rounding`]).
+//! Places are rounded as long as the steps are large, so that nearly the same input gives nearly the same map
+//! ([`rounding`]).
 //!
 //! The map is stationary where neither betters it: target edges are kinks of the energy, at which vertices come to lie
 //! with a slope on either side ([`kinks`]).
@@ -80,6 +81,10 @@ const SWEEPS: usize = 2;
 
 /// Mean distortion beyond 1 below which a map is an isometry.
 pub(crate) const ISOMETRY: f64 = 1e-6;
+
+/// Relative decrease of the energy by a step or a round above which it is large, so that the places reached may be
+/// rounded.
+const LARGE_DECREASE: f64 = 1e-3;
 
 /// Relative decrease of the energy by a step below which it is small; two small ones in turn end the steps.
 const SMALL_STEP: f64 = 1e-4;
@@ -200,10 +205,13 @@ struct Descent<'a> {
 }
 
 impl Descent<'_> {
-    /// Rounds of steps and a sweep from rounded places, until the energy hardly falls.
+    /// Rounds of steps and a sweep, until the energy hardly falls; from rounded places as long as it falls much.
     fn rounds(&mut self, moving: &mut Moving<'_, '_>, stage: &Stage) -> Status {
+        let mut is_large = true;
         for _ in 0..stage.rounds {
-            moving.round();
+            if is_large {
+                moving.round(self.colors);
+            }
             let before = moving.energy.value(&moving.map);
             if self.steps(moving, stage.steps).is_err() {
                 return Status::Cancelled;
@@ -214,6 +222,7 @@ impl Descent<'_> {
             if before - after <= self.small_round * before {
                 return Status::Converged;
             }
+            is_large = before - after > LARGE_DECREASE * before;
         }
         Status::MaxIterations
     }
@@ -225,8 +234,11 @@ impl Descent<'_> {
 
     /// Newton's steps, until two in turn are small.
     fn steps(&mut self, moving: &mut Moving<'_, '_>, most: usize) -> Result<(), Failure> {
-        let mut small = 0;
+        let (mut small, mut is_large) = (0, false);
         for step in 0..most {
+            if is_large {
+                moving.round(self.colors);
+            }
             let fraction = self.fraction(step as f64 / most as f64);
             if !self.observer.progress(fraction, MESSAGE) {
                 return Err(Failure::Cancelled);
@@ -245,6 +257,7 @@ impl Descent<'_> {
                 from_vectors(points_on(&locations, self.target_points, moving.energy.target.faces()))
             };
             self.observer.preview(&positions);
+            is_large = before - after > LARGE_DECREASE * before;
             small = if before - after < SMALL_STEP * before { small + 1 } else { 0 };
             if small >= 2 {
                 break;

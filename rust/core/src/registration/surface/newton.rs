@@ -4,8 +4,9 @@
 //! A step is a tangent vector at each vertex; the vertex walks along it straight over the target. Target edges are
 //! kinks of the energy: a vertex that lies lowest on one stays there ([`kinks`](super::kinks)). A few faces near their
 //! limit would hold up a whole step: their vertices go a part of the way, their neighbors up to twice that part, and so
-//! on. Steps that keep little of their promise damp the next ones (D. W. Marquardt, An algorithm for least-squares
-//! estimation of nonlinear parameters, J. SIAM 11, 1963): with undamped ones noise in the input grows from step to step.
+//! on. Steps that are shortened or keep little of their promise damp the next ones (D. W. Marquardt, An algorithm for
+//! least-squares estimation of nonlinear parameters, J. SIAM 11, 1963): with undamped ones noise in the input grows from
+//! step to step.
 //!
 //! Cost of a step: one factorization of two unknowns per vertex.
 
@@ -144,7 +145,8 @@ impl<'a, 'p> Moving<'a, 'p> {
             if let Some(trial) = self.trial(&direction, share, &values, &of_vertices) {
                 self.go_to(trial.map);
                 let energies = [before, trial.value];
-                self.damp((before - trial.value) / (-0.5 * direction.slope));
+                let kept = (before - trial.value) / (-0.5 * direction.slope);
+                self.damp(if share < 1.0 { 0.0 } else { kept });
                 return Ok(Some(Step { energies, share, slope: direction.slope }));
             }
             share *= SHORTER;
@@ -152,7 +154,7 @@ impl<'a, 'p> Moving<'a, 'p> {
         Ok(None)
     }
 
-    /// Damps the next steps according to the part of its promise that one has kept.
+    /// Damps the next steps according to the part of its promise that one has kept, none if it was shortened.
     fn damp(&mut self, kept: f64) {
         if kept < POOR {
             self.damping = (DAMPING_FACTOR * self.damping).clamp(LEAST_DAMPING, MOST_DAMPING);

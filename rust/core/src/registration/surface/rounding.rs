@@ -5,35 +5,59 @@
 //! descents end in different minima. A grid whose cells are small beside faces and large beside noise gives both the same
 //! places again: all that is left of the noise is that of the target itself.
 //!
-//! Cost: two energies of a star for each vertex.
+//! Cost: the energy of a star for each vertex, more where faces are thin.
 
-use super::newton::{Motion, Moving};
+use super::newton::Moving;
+use super::sweep::Colors;
+use super::target::Placed;
 use crate::location::Location;
 use crate::mesh::Vertex;
+use crate::parallel;
 
-/// Cells along an edge of the target, where it has as many faces as the source; more where it has fewer.
+/// Cells along an edge of the target, where it has as many faces as the source or more; else more.
 const CELLS: f64 = 256.0;
 
-/// Factor by which the energy around a vertex may rise; else it stays.
+/// Factors of the number of cells that are tried in turn: where faces are thin, only a finer grid keeps them.
+const FINER: [f64; 3] = [1.0, 8.0, 64.0];
+
+/// Factor by which the energy around a vertex may rise.
 const MOST_RISE: f64 = 1.1;
 
 impl Moving<'_, '_> {
-    /// Rounds the places of all vertices that may move, one after the other.
-    pub(super) fn round(&mut self) {
+    /// Rounds the places of all vertices that may move, those of one color side by side.
+    pub(super) fn round(&mut self, colors: &Colors) {
         let energy = self.energy;
         let n_faces = [energy.source.n_faces(), energy.target.mesh().n_faces()];
-        let cells = CELLS * (n_faces[0] as f64 / n_faces[1] as f64).sqrt().ceil();
-        for vertex in Vertex::all(self.map.len()) {
-            if self.motions[vertex] == Motion::Held {
-                continue;
-            }
-            let here = &self.map[vertex];
-            let rounded = energy.target.placed(rounded(here.location, cells));
-            let limit = MOST_RISE * energy.star_value(&self.map, vertex, here, f64::INFINITY);
-            if energy.star_value(&self.map, vertex, &rounded, limit) < limit {
+        let density = (n_faces[0] as f64 / n_faces[1] as f64).sqrt();
+        let cells = (CELLS * density.max(1.0)).round();
+        let before = parallel::map(energy.areas.len(), |face| {
+            energy.areas[face] * energy.face_value(face, energy.corners(&self.map, face))
+        });
+        for group in colors.groups() {
+            let rounded = parallel::map(group.len(), |k| self.rounded(group[k], cells, &before));
+            for (&vertex, rounded) in group.iter().zip(rounded) {
                 self.map[vertex] = rounded;
             }
         }
+    }
+
+    /// The rounded place of a vertex; its own where the energy would rise even on the finest grid.
+    fn rounded(&self, vertex: Vertex, cells: f64, before: &[f64]) -> Placed {
+        let (energy, here) = (self.energy, &self.map[vertex]);
+        let around: f64 =
+            energy.source.vertex_corners(vertex).iter().map(|corner| before[corner.face()]).sum();
+        let limit = MOST_RISE * (around + energy.vertex_value(vertex, here));
+        for finer in FINER {
+            let location = rounded(here.location, finer * cells);
+            if location == here.location {
+                break;
+            }
+            let there = energy.target.placed(location);
+            if energy.star_value(&self.map, vertex, &there, limit) < limit {
+                return there;
+            }
+        }
+        *here
     }
 }
 
@@ -48,12 +72,58 @@ fn rounded(location: Location, cells: f64) -> Location {
 
 #[cfg(test)]
 mod tests {
+    use super::super::energy::{Guard, SurfaceEnergy};
+    use super::super::newton::Motion;
+    use super::super::sample_maps::Sample;
     use super::*;
+    use crate::location::tests::number;
     use crate::mesh::Face;
+
+    const GUARD: Guard = Guard { weight: 0.1, slack: 3.0 };
+
+    #[test]
+    fn noise_is_gone_after_it() {
+        for sample in [Sample::spheres(), Sample::disks()] {
+            let problem = sample.problem();
+            let energy = SurfaceEnergy::new(&problem, GUARD);
+            let motions = vec![Motion::Free; sample.start.len()];
+            let colors = Colors::new(&sample.source, &motions);
+            let rounded = |noise: f64| {
+                let place = |(k, location): (usize, &Location)| {
+                    let barycentric = location.barycentric;
+                    let change = if barycentric.contains(&0.0) { 0.0 } else { noise * number(k) };
+                    let [a, b, c] = barycentric;
+                    energy.target.placed(Location { barycentric: [a + change, b - change, c], ..*location })
+                };
+                let map: Vec<Placed> = sample.start.iter().enumerate().map(place).collect();
+                let before = energy.value(&map);
+                let mut moving = Moving::new(&energy, &motions, map);
+                moving.round(&colors);
+                assert!(energy.value(&moving.map) < MOST_RISE * before);
+                moving.map
+            };
+            assert!(rounded(1e-9) == rounded(0.0));
+        }
+    }
+
+    #[test]
+    fn vertices_that_are_held_stay() {
+        let sample = Sample::spheres();
+        let problem = sample.problem();
+        let energy = SurfaceEnergy::new(&problem, GUARD);
+        let mut motions = vec![Motion::Free; sample.start.len()];
+        motions[5] = Motion::Held;
+        let map: Vec<Placed> = sample.start.iter().map(|&location| energy.target.placed(location)).collect();
+        let mut moving = Moving::new(&energy, &motions, map.clone());
+        moving.round(&Colors::new(&sample.source, &motions));
+        assert_eq!(moving.map[5], map[5]);
+        assert!(Vertex::all(map.len()).any(|vertex| moving.map[vertex] != map[vertex]));
+    }
 
     #[test]
     fn coordinates_are_whole_numbers_of_cells_with_sum_1_and_zeros_stay() {
-        let places = [[0.2, 0.3, 0.5], [1e-9, 0.4, 0.6 - 1e-9], [0.0, 0.25, 0.75], [0.0, 1.0, 0.0], [1.0 / 3.0; 3]];
+        let places =
+            [[0.2, 0.3, 0.5], [1e-9, 0.4, 0.6 - 1e-9], [0.0, 0.25, 0.75], [0.0, 1.0, 0.0], [1.0 / 3.0; 3]];
         for barycentric in places {
             let place = Location { triangle: Face(7), barycentric };
             let Location { triangle, barycentric: after } = rounded(place, 64.0);

@@ -56,12 +56,16 @@ impl Colors {
         }
         Self(groups)
     }
+
+    pub(super) fn groups(&self) -> &[Vec<Vertex>] {
+        &self.0
+    }
 }
 
 impl Moving<'_, '_> {
     /// Searches around each vertex with a distorted face.
     pub(super) fn sweep(&mut self, colors: &Colors) {
-        for group in &colors.0 {
+        for group in colors.groups() {
             let better = parallel::map(group.len(), |k| self.best_nearby(group[k]));
             for (&vertex, better) in group.iter().zip(better) {
                 if let Some(better) = better {

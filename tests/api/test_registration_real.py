@@ -211,3 +211,21 @@ def test_a_head_onto_a_head():
     ]
     pair = pairs.Pair(source, target, *marks)
     assert_what_the_papers_reach(pairs.register(pair), pair)
+
+
+@pytest.mark.parametrize(("source", "target"), [("388", "391"), ("385", "388"), ("381", "393")])
+def test_noise_does_not_move_one_animal_on_another(source, target):
+    rng = np.random.default_rng(11)
+    files = [surface(f"bench/shrec07/{name}.npz") for name in (source, target)]
+    landmarks = [arrays["landmarks"] for _, arrays in files]
+    plain = pairs.Pair(files[0][0], files[1][0], *landmarks)
+
+    def noisy(mesh):
+        return meshes.Mesh(
+            mesh.vertices + 1e-12 * pairs.size(mesh) * rng.uniform(-1, 1, mesh.vertices.shape), mesh.faces
+        )
+
+    moved = plain._replace(source=noisy(plain.source), target=noisy(plain.target))
+    here, there = (pairs.register(pair, energy="surface") for pair in (plain, moved))
+    assert here.status == "converged"
+    assert np.abs(here.positions - there.positions).max() <= 1e-6 * pairs.size(plain.target)

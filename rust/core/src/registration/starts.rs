@@ -5,6 +5,9 @@ use super::surface::ISOMETRY;
 use crate::control::{Observer, Phase, Status};
 use crate::error::Error;
 
+/// Part of the energy by which a later start has to be better: rounding does not choose between two that end alike.
+const LEAST_GAIN: f64 = 1e-6;
+
 /// What one map is better by than another.
 pub(super) struct Rank {
     /// The number of exact pairs of landmarks that do not meet.
@@ -37,8 +40,11 @@ pub(super) fn best_of<L>(
         let of_laid = rank(&laid);
         is_cancelled = of_laid.status == Status::Cancelled;
         let is_last = is_cancelled || of_laid.energy < 1.0 + ISOMETRY;
-        let order = |rank: &Rank| (rank.n_apart, rank.energy);
-        if best.as_ref().is_none_or(|(_, best)| order(&of_laid) < order(best)) {
+        let is_better = |best: &Rank| {
+            let energy = (1.0 - LEAST_GAIN) * best.energy;
+            (of_laid.n_apart, of_laid.energy) < (best.n_apart, energy)
+        };
+        if best.as_ref().is_none_or(|(_, best)| is_better(best)) {
             best = Some((laid, of_laid));
         }
         if is_last {

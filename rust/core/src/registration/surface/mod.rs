@@ -205,24 +205,26 @@ struct Descent<'a> {
 }
 
 impl Descent<'_> {
-    /// Rounds of steps and a sweep, until the energy hardly falls; from rounded places as long as it falls much.
+    /// Rounds of steps and a sweep, until the energy hardly falls.
     fn rounds(&mut self, moving: &mut Moving<'_, '_>, stage: &Stage) -> Status {
         let mut is_large = true;
+        let mut before = moving.energy.value(&moving.map);
         for _ in 0..stage.rounds {
-            if is_large {
-                moving.round(self.colors);
-            }
-            let before = moving.energy.value(&moving.map);
-            if self.steps(moving, stage.steps).is_err() {
+            let start = moving.map.clone();
+            if self.steps(moving, stage.steps, before, is_large).is_err() {
                 return Status::Cancelled;
             }
             moving.sweep(self.colors);
             self.done += 1;
             let after = moving.energy.value(&moving.map);
+            if after > before {
+                moving.map = start;
+            }
             if before - after <= self.small_round * before {
                 return Status::Converged;
             }
             is_large = before - after > LARGE_DECREASE * before;
+            before = after;
         }
         Status::MaxIterations
     }
@@ -232,24 +234,35 @@ impl Descent<'_> {
         (self.done as f64 + share) / self.n_rounds as f64
     }
 
-    /// Newton's steps, until two in turn are small.
-    fn steps(&mut self, moving: &mut Moving<'_, '_>, most: usize) -> Result<(), Failure> {
-        let (mut small, mut is_large) = (0, false);
+    /// Newton's steps, until two in turn are small; from rounded places after large ones, and at first if `is_large`.
+    fn steps(
+        &mut self,
+        moving: &mut Moving<'_, '_>,
+        most: usize,
+        mut value: f64,
+        mut is_large: bool,
+    ) -> Result<(), Failure> {
+        let mut small = 0;
         for step in 0..most {
-            if is_large {
-                moving.round(self.colors);
-            }
             let fraction = self.fraction(step as f64 / most as f64);
             if !self.observer.progress(fraction, MESSAGE) {
                 return Err(Failure::Cancelled);
             }
             let watch = Watch::new(self.observer, fraction, MESSAGE);
-            let step = match moving.step(self.analysis, self.factor, &watch) {
-                Ok(step) => step,
+            let given = is_large.then(|| moving.map.clone());
+            if is_large {
+                moving.round(self.colors);
+            }
+            let taken = moving.step(self.analysis, self.factor, &watch);
+            if let (Some(given), Ok(None) | Err(_)) = (given, &taken) {
+                moving.map = given;
+            }
+            let taken = match taken {
                 Err(Failure::Cancelled) => return Err(Failure::Cancelled),
                 Err(Failure::NotPositiveDefinite) => None,
+                Ok(taken) => taken,
             };
-            let Some(Step { energies: [before, after], share, slope }) = step else { break };
+            let Some(Step { energies: [before, after], share, slope }) = taken else { break };
             self.history.push_start(before, slope.abs());
             self.history.push(after, share, slope.abs());
             let positions = || {
@@ -257,11 +270,12 @@ impl Descent<'_> {
                 from_vectors(points_on(&locations, self.target_points, moving.energy.target.faces()))
             };
             self.observer.preview(&positions);
-            is_large = before - after > LARGE_DECREASE * before;
             small = if before - after < SMALL_STEP * before { small + 1 } else { 0 };
             if small >= 2 {
                 break;
             }
+            is_large = value - after > LARGE_DECREASE * value;
+            value = after;
         }
         Ok(())
     }
@@ -272,6 +286,7 @@ mod tests {
     use super::sample_maps::Sample;
     use super::*;
     use crate::control::Silent;
+    use crate::location::tests::number;
     use crate::mesh::TriangleMesh;
     use crate::mesh::geometry::triangle;
 
@@ -346,6 +361,26 @@ mod tests {
         let sample = Sample::turned_ball();
         assert!((mean_distortion(&sample, &sample.start) - 1.0).abs() < 1e-12);
         assert_eq!(descended(&sample.problem(), &sample.start), (sample.start.clone(), Status::Converged));
+    }
+
+    #[test]
+    fn noise_of_the_start_is_forgotten() {
+        for sample in [Sample::spheres(), Sample::disks()] {
+            let noisy: Vec<Location> = sample
+                .start
+                .iter()
+                .enumerate()
+                .map(|(k, location)| {
+                    let [a, b, c] = location.barycentric;
+                    let is_inside = !location.barycentric.contains(&0.0);
+                    let change = if is_inside { 1e-10 * number(k) } else { 0.0 };
+                    Location { barycentric: [a + change, b - change, c], ..*location }
+                })
+                .collect();
+            assert!(noisy != sample.start);
+            let problem = sample.problem();
+            assert!(descended(&problem, &noisy) == descended(&problem, &sample.start));
+        }
     }
 
     #[test]

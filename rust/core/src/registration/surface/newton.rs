@@ -25,7 +25,7 @@ use crate::vector::Vector3;
 const SHIFTS: [f64; 2] = [1e-8, 1e-6];
 
 /// Parts of the decrease promised by the quadratic model below which the next step is damped more, and above which it is
-/// damped less, by a factor; the least damping that there is if any, and the most.
+/// damped less, by a factor; the least that it is raised to, and the most.
 const POOR: f64 = 0.25;
 const GOOD: f64 = 0.75;
 const DAMPING_FACTOR: f64 = 4.0;
@@ -145,8 +145,8 @@ impl<'a, 'p> Moving<'a, 'p> {
             if let Some(trial) = self.trial(&direction, share, &values, &of_vertices) {
                 self.go_to(trial.map);
                 let energies = [before, trial.value];
-                let kept = (before - trial.value) / (-0.5 * direction.slope);
-                self.damp(if share < 1.0 { 0.0 } else { kept });
+                let kept = if share < 1.0 { 0.0 } else { (before - trial.value) / (-0.5 * direction.slope) };
+                self.damp(kept);
                 return Ok(Some(Step { energies, share, slope: direction.slope }));
             }
             share *= SHORTER;

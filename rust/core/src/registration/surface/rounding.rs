@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Places are rounded to a grid on each face of the target, by which noise in the input is forgotten.
+//! Places are rounded to a grid on each face of the target, by which most noise in the input is forgotten.
 //!
 //! What is nearly the same at first grows apart from step to step, and once two candidates of a search change places, two
 //! descents end in different minima. A grid whose cells are small beside faces and large beside noise gives both the same
-//! places again: all that is left of the noise is that of the target itself.
+//! places again, but for the few that lie midway between two points of the grid.
 //!
 //! Cost: the energy of a star for each vertex, more where faces are thin.
 
@@ -14,8 +14,11 @@ use crate::location::Location;
 use crate::mesh::Vertex;
 use crate::parallel;
 
-/// Cells along an edge of the target, where it has as many faces as the source or more; else more.
+/// Cells along an edge of a target that is as fine as the source; a coarser one has more.
 const CELLS: f64 = 256.0;
+
+/// Coordinates up to this are 0: the place lies on an edge up to rounding.
+const ON_EDGE: f64 = 1e-9;
 
 /// Factors of the number of cells that are tried in turn: where faces are thin, only a finer grid keeps them.
 const FINER: [f64; 3] = [1.0, 8.0, 64.0];
@@ -29,7 +32,7 @@ impl Moving<'_, '_> {
         let energy = self.energy;
         let n_faces = [energy.source.n_faces(), energy.target.mesh().n_faces()];
         let density = (n_faces[0] as f64 / n_faces[1] as f64).sqrt();
-        let cells = (CELLS * density.max(1.0)).round();
+        let cells = CELLS * density.max(1.0).log2().round().exp2();
         let before = parallel::map(energy.areas.len(), |face| {
             energy.areas[face] * energy.face_value(face, energy.corners(&self.map, face))
         });
@@ -61,9 +64,10 @@ impl Moving<'_, '_> {
     }
 }
 
-/// The place with its coordinates rounded to whole numbers of cells; those that are not 0 stay so.
+/// The place with its coordinates rounded to whole numbers of cells; those that are more than 0 stay so.
 fn rounded(location: Location, cells: f64) -> Location {
-    let mut whole = location.barycentric.map(|x| if x > 0.0 { (cells * x).round().max(1.0) } else { 0.0 });
+    let mut whole =
+        location.barycentric.map(|x| if x > ON_EDGE { (cells * x).round().max(1.0) } else { 0.0 });
     let sum: f64 = whole.iter().sum();
     let largest = (0..3).fold(0, |best, k| if whole[k] > whole[best] { k } else { best });
     whole[largest] += cells - sum;
@@ -107,6 +111,13 @@ mod tests {
     }
 
     #[test]
+    fn a_place_on_an_edge_up_to_rounding_comes_to_lie_on_it() {
+        let place = |x: f64| Location { triangle: Face(3), barycentric: [x, 0.3, 0.7 - x] };
+        assert_eq!(rounded(place(1e-13), 256.0), rounded(place(0.0), 256.0));
+        assert_eq!(rounded(place(1e-13), 256.0).barycentric[0], 0.0);
+    }
+
+    #[test]
     fn vertices_that_are_held_stay() {
         let sample = Sample::spheres();
         let problem = sample.problem();
@@ -123,7 +134,7 @@ mod tests {
     #[test]
     fn coordinates_are_whole_numbers_of_cells_with_sum_1_and_zeros_stay() {
         let places =
-            [[0.2, 0.3, 0.5], [1e-9, 0.4, 0.6 - 1e-9], [0.0, 0.25, 0.75], [0.0, 1.0, 0.0], [1.0 / 3.0; 3]];
+            [[0.2, 0.3, 0.5], [1e-6, 0.4, 0.6 - 1e-6], [0.0, 0.25, 0.75], [0.0, 1.0, 0.0], [1.0 / 3.0; 3]];
         for barycentric in places {
             let place = Location { triangle: Face(7), barycentric };
             let Location { triangle, barycentric: after } = rounded(place, 64.0);

@@ -23,8 +23,8 @@ const DISTORTED: f64 = 1.3;
 /// many small jumps is taken depends on rounding.
 const LEAST_GAIN: f64 = 1e-3;
 
-/// Directions and radii of the search, the factor from radius to radius, and the turn of the directions with it, which
-/// begin with half of it: no walk from a place on an edge is along the edge, and of regular faces to a corner.
+/// Directions and radii of the search, the factor from radius to radius, and the turn of the directions with it. The
+/// first are turned by half of that, so that in regular faces no walk runs along an edge or ends at a corner.
 const DIRECTIONS: usize = 12;
 const RADII: usize = 6;
 const SHRINKING: f64 = 0.4;

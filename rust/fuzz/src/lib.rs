@@ -2,7 +2,7 @@
 //! The targets of the fuzzer, and meshes and options out of its bytes.
 //!
 //! Bytes first choose a sound surface, then change it step by step, so that both sound and broken meshes are common.
-//! The tests of the crate include this file too: they run all targets on the inputs in `corpus/`, without a fuzzer.
+//! The tests of the crate include this file too: they run each input in `corpus/` by its target, without a fuzzer.
 
 pub mod cut;
 pub mod disk_map;

@@ -60,7 +60,7 @@ PLATFORMS = {
         runner="qemu-aarch64 -L /usr/aarch64-linux-gnu",
         wheel="linux_aarch64",
         libraries=r"(libc|libm|libgcc_s|ld-linux-aarch64)\.so\.\d",
-        # Each takes 7 s to 2 minutes on this machine, and twenty times as long by qemu.
+        # Each takes 7 s to 2 minutes on two cores, and twenty times as long by qemu.
         slow_tests=(
             "every_processor_finds_the_same_map",
             "a_factorization_can_be_cancelled_and_done_again",

@@ -263,7 +263,8 @@ impl MeshError {
         }
     }
 
-    /// Whether [`repair`](crate::repair()) takes the fault away by its default options, where that leaves any face.
+    /// Whether it is a fault of single elements, which [`repair`](crate::repair()) takes away by its default options where
+    /// that leaves any face. It may mend others too: surfaces in pieces or open ones whose vertices coincide.
     pub(super) fn is_mended_by_repair(&self) -> bool {
         matches!(
             self,

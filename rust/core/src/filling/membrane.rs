@@ -58,7 +58,7 @@ pub(crate) fn cone(hole: &[Vertex], apex: Vertex) -> impl Iterator<Item = [Verte
     (0..hole.len()).map(move |k| [hole[(k + 1) % hole.len()], hole[k], apex])
 }
 
-/// Whether a face is no thinner than those of fillings may be.
+/// Whether a face is thicker than the thinnest that a filling should have.
 pub(crate) fn is_fat(corners: [Vector3; 3]) -> bool {
     thickness(corners) > THINNEST
 }

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use super::outline::Point;
 
 /// Angles, and sizes in parts of themselves, that differ by less are equal but for rounding.
-const EQUAL: f64 = 1e-9;
+pub(super) const EQUAL: f64 = 1e-9;
 
 /// The point turned by the angle whose cosine and sine are given.
 pub(super) fn turned(point: Point, [cos, sin]: [f64; 2]) -> Point {

@@ -12,7 +12,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::angles::{least_box_angle, turned_box, turned_size};
+use super::angles::{EQUAL, least_box_angle, turned_box, turned_size};
 use super::outline::{Outline, Point};
 use super::rotation::Rotation;
 
@@ -97,7 +97,7 @@ fn alone(outlines: &[Outline], island: usize) -> Piece {
 fn level(hull: &[Point], island: usize, rotation: Rotation) -> Level {
     let mut angle = if rotation == Rotation::Free { least_box_angle(hull) } else { 0.0 };
     let [width, height] = turned_size(hull, angle, 1.0);
-    if rotation != Rotation::Fixed && height > width * (1.0 + 1e-9) {
+    if rotation != Rotation::Fixed && height > width * (1.0 + EQUAL) {
         angle += FRAC_PI_2;
     }
     let [corner, end] = turned_box(hull, angle, 1.0);

@@ -211,7 +211,7 @@ impl Descent<'_> {
         let mut before = moving.energy.value(&moving.map);
         for _ in 0..stage.rounds {
             let start = moving.map.clone();
-            if self.steps(moving, stage.steps, before, is_large).is_err() {
+            if self.steps(moving, stage.steps, is_large).is_err() {
                 return Status::Cancelled;
             }
             moving.sweep(self.colors);
@@ -235,13 +235,7 @@ impl Descent<'_> {
     }
 
     /// Newton's steps, until two in turn are small; from rounded places after large ones, and at first if `is_large`.
-    fn steps(
-        &mut self,
-        moving: &mut Moving<'_, '_>,
-        most: usize,
-        mut value: f64,
-        mut is_large: bool,
-    ) -> Result<(), Failure> {
+    fn steps(&mut self, moving: &mut Moving<'_, '_>, most: usize, mut is_large: bool) -> Result<(), Failure> {
         let mut small = 0;
         for step in 0..most {
             let fraction = self.fraction(step as f64 / most as f64);
@@ -274,8 +268,7 @@ impl Descent<'_> {
             if small >= 2 {
                 break;
             }
-            is_large = value - after > LARGE_DECREASE * value;
-            value = after;
+            is_large = before - after > LARGE_DECREASE * before;
         }
         Ok(())
     }

@@ -113,6 +113,11 @@ impl<'a> SurfaceEnergy<'a> {
         a.dot(b.cross(c)) <= LEAST_DETERMINANT
     }
 
+    /// The energy of each face per area.
+    pub(super) fn face_values(&self, map: &[Placed]) -> Vec<f64> {
+        parallel::map(self.areas.len(), |face| self.face_value(face, self.corners(map, face)))
+    }
+
     /// The energy of a face per area, infinite if it is folded.
     pub(super) fn face_value(&self, face: usize, corners: [&Placed; 3]) -> f64 {
         if self.left_out[face] {
@@ -372,9 +377,7 @@ mod tests {
         let value_with = |guard: Guard| {
             let energy = SurfaceEnergy::new(&problem, guard);
             let map = placed(&energy, &sample);
-            (0..energy.areas.len())
-                .map(|face| energy.face_value(face, energy.corners(&map, face)))
-                .collect::<Vec<f64>>()
+            energy.face_values(&map)
         };
         let without = value_with(NO_GUARD);
         let in_domain = value_with(Guard { weight: 1.0, slack: 0.0 });

@@ -279,7 +279,6 @@ mod tests {
     use super::sample_maps::Sample;
     use super::*;
     use crate::control::Silent;
-    use crate::location::tests::number;
     use crate::mesh::TriangleMesh;
     use crate::mesh::geometry::triangle;
 
@@ -359,17 +358,7 @@ mod tests {
     #[test]
     fn noise_of_the_start_is_forgotten() {
         for sample in [Sample::spheres(), Sample::disks()] {
-            let noisy: Vec<Location> = sample
-                .start
-                .iter()
-                .enumerate()
-                .map(|(k, location)| {
-                    let [a, b, c] = location.barycentric;
-                    let is_inside = !location.barycentric.contains(&0.0);
-                    let change = if is_inside { 1e-10 * number(k) } else { 0.0 };
-                    Location { barycentric: [a + change, b - change, c], ..*location }
-                })
-                .collect();
+            let noisy = sample.start_with_noise(1e-10);
             assert!(noisy != sample.start);
             let problem = sample.problem();
             assert!(descended(&problem, &noisy) == descended(&problem, &sample.start));

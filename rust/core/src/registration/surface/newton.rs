@@ -130,9 +130,7 @@ impl<'a, 'p> Moving<'a, 'p> {
         // 2. The direction
         let direction = self.direction(courses, analysis, factor, watch)?;
         // 3. As much of it as lowers the energy
-        let values = parallel::map(self.energy.areas.len(), |face| {
-            self.energy.face_value(face, self.energy.corners(&self.map, face))
-        });
+        let values = self.energy.face_values(&self.map);
         let of_vertices = parallel::map(self.map.len(), |vertex| {
             self.energy.vertex_value(Vertex::new(vertex), &self.map[vertex])
         });
@@ -299,8 +297,7 @@ impl<'a, 'p> Moving<'a, 'p> {
         let goal = SUFFICIENT * share * direction.slope;
         let mut shares = vec![share; n];
         let mut map = parallel::map(n, |vertex| self.moved(direction, vertex, share));
-        let value_of = |map: &[Placed], face: usize| energy.face_value(face, energy.corners(map, face));
-        let mut after = parallel::map(values.len(), |face| value_of(&map, face));
+        let mut after = energy.face_values(&map);
         let mut relentings = 0;
         for round in 0..ROUNDS {
             // 1. Faces that fold or run into a barrier
@@ -327,7 +324,8 @@ impl<'a, 'p> Moving<'a, 'p> {
                 map[vertex] = self.moved(direction, vertex, shares[vertex]);
             }
             for corner in changed.iter().flat_map(|&v| energy.source.vertex_corners(Vertex::new(v))) {
-                after[corner.face()] = value_of(&map, corner.face().index());
+                let face = corner.face().index();
+                after[face] = energy.face_value(face, energy.corners(&map, face));
             }
         }
         None

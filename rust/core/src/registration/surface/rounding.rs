@@ -11,7 +11,7 @@ use super::newton::Moving;
 use super::sweep::Colors;
 use super::target::Placed;
 use crate::location::Location;
-use crate::mesh::Vertex;
+use crate::mesh::{Face, Vertex};
 use crate::parallel;
 
 /// Cells along an edge of a target that is as fine as the source; a coarser one has more.
@@ -33,9 +33,7 @@ impl Moving<'_, '_> {
         let n_faces = [energy.source.n_faces(), energy.target.mesh().n_faces()];
         let density = (n_faces[0] as f64 / n_faces[1] as f64).sqrt();
         let cells = CELLS * density.max(1.0).log2().round().exp2();
-        let before = parallel::map(energy.areas.len(), |face| {
-            energy.areas[face] * energy.face_value(face, energy.corners(&self.map, face))
-        });
+        let before = energy.face_values(&self.map);
         for group in colors.groups() {
             let rounded = parallel::map(group.len(), |k| self.rounded(group[k], cells, &before));
             for (&vertex, rounded) in group.iter().zip(rounded) {
@@ -47,8 +45,9 @@ impl Moving<'_, '_> {
     /// The rounded place of a vertex; its own where the energy would rise even on the finest grid.
     fn rounded(&self, vertex: Vertex, cells: f64, before: &[f64]) -> Placed {
         let (energy, here) = (self.energy, &self.map[vertex]);
+        let of_face = |face: Face| energy.areas[face] * before[face];
         let around: f64 =
-            energy.source.vertex_corners(vertex).iter().map(|corner| before[corner.face()]).sum();
+            energy.source.vertex_corners(vertex).iter().map(|corner| of_face(corner.face())).sum();
         let limit = MOST_RISE * (around + energy.vertex_value(vertex, here));
         for finer in FINER {
             let location = rounded(here.location, finer * cells);
@@ -80,8 +79,6 @@ mod tests {
     use super::super::newton::Motion;
     use super::super::sample_maps::Sample;
     use super::*;
-    use crate::location::tests::number;
-    use crate::mesh::Face;
 
     const GUARD: Guard = Guard { weight: 0.1, slack: 3.0 };
 
@@ -93,13 +90,8 @@ mod tests {
             let motions = vec![Motion::Free; sample.start.len()];
             let colors = Colors::new(&sample.source, &motions);
             let rounded = |noise: f64| {
-                let place = |(k, location): (usize, &Location)| {
-                    let barycentric = location.barycentric;
-                    let change = if barycentric.contains(&0.0) { 0.0 } else { noise * number(k) };
-                    let [a, b, c] = barycentric;
-                    energy.target.placed(Location { barycentric: [a + change, b - change, c], ..*location })
-                };
-                let map: Vec<Placed> = sample.start.iter().enumerate().map(place).collect();
+                let places = sample.start_with_noise(noise);
+                let map: Vec<Placed> = places.into_iter().map(|place| energy.target.placed(place)).collect();
                 let before = energy.value(&map);
                 let mut moving = Moving::new(&energy, &motions, map);
                 moving.round(&colors);

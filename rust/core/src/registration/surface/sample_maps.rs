@@ -4,7 +4,7 @@
 use super::density::FaceEnergy;
 use super::problem::{Start, SurfaceProblem};
 use crate::codomain::CanonicalDomain;
-use crate::location::tests::{Map, octasphere, rings};
+use crate::location::tests::{Map, number, octasphere, rings};
 use crate::location::{Location, Locator};
 use crate::mesh::{Corner, TriangleMesh, Vertex};
 use crate::registration::features::Signals;
@@ -94,6 +94,16 @@ impl Sample {
         let source = mesh(points.iter().map(|&x| turned(bumpy(x))), &faces);
         let start = Vertex::all(points.len()).map(|vertex| at_vertex(&target, vertex)).collect();
         Self { source, target, domain: CanonicalDomain::Sphere, target_in_domain: points, start }
+    }
+
+    /// The places of the start, moved by noise where they lie within a face.
+    pub(super) fn start_with_noise(&self, noise: f64) -> Vec<Location> {
+        let moved = |(k, location): (usize, &Location)| {
+            let [a, b, c] = location.barycentric;
+            let change = if location.barycentric.contains(&0.0) { 0.0 } else { noise * number(k) };
+            Location { barycentric: [a + change, b - change, c], ..*location }
+        };
+        self.start.iter().enumerate().map(moved).collect()
     }
 
     /// The symmetric Dirichlet energy without landmarks and signals.

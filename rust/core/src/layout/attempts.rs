@@ -9,7 +9,7 @@ use super::development::{bring_back, develop};
 use super::options::LayoutOptions;
 use super::polygons::Polygons;
 use super::projection::Projection;
-use super::relaxation::{Goal, even_out, relax};
+use super::relaxation::{Goal, even_out, put_on_grid, relax};
 use super::seam::{Layout, Split, split_along_seam};
 use super::singular_points::{SphereMesh, place_singular_points};
 use super::sphere_faces::SphereFaces;
@@ -52,6 +52,9 @@ const LEAST_TOLERANCE: f64 = 0.005;
 /// Increase of the tolerance per unit of the map's area deviation √(E_A/A).
 const OF_THE_MAP: f64 = 1.0;
 
+/// Width of the cells of the grid of the targets, relative to the power of two below a target.
+const TARGET_CELL: f64 = 1.0 / 65_536.0;
+
 /// The input of a layout, prepared for a projection.
 pub(super) struct Run<'a, P> {
     faces: &'a [[Vertex; 3]],
@@ -62,7 +65,7 @@ pub(super) struct Run<'a, P> {
     points: Vec<Vector3>,
     corners: VertexCorners,
     polygons: Polygons,
-    /// (m,): target areas on the sphere; their sum is 4π.
+    /// (m,): target areas on the sphere, rounded; their sum is about 4π.
     targets: Vec<f64>,
     /// Tolerance of the areas relative to their targets.
     tolerance: f64,
@@ -100,7 +103,7 @@ impl<'a, P: Projection> Run<'a, P> {
             corners: VertexCorners::new(positions.len(), faces),
             polygons: Polygons::new(faces, labels.as_deref()),
             tolerance: LEAST_TOLERANCE + OF_THE_MAP * sphere.deviation(&positions, &targets),
-            targets,
+            targets: targets.into_iter().map(rounded_target).collect(),
             candidates: sphere.candidates(options.candidates, P::SINGULAR.len())?,
             precision: options.precision,
             began,
@@ -194,6 +197,7 @@ impl<'a, P: Projection> Run<'a, P> {
 
     /// Relaxes the areas; unfolds faces unless too many are folded.
     fn straighten(&self, chart: &mut Chart<'_, P>, goal: &Goal<'_>, watch: &Watch<'_>) {
+        put_on_grid(chart, goal);
         relax(chart, goal, watch);
         for _ in 0..UNFOLDINGS {
             let is_folded = nearly_folded(&chart.images(), goal.rounding);
@@ -261,6 +265,13 @@ impl<'a, P: Projection> Run<'a, P> {
         parallel::fill_with_old(&mut split.points, finished);
         split
     }
+}
+
+/// A target on a grid that is fine beside [`LEAST_TOLERANCE`] and coarse beside noise, as
+/// [`put_on_grid`](super::relaxation::put_on_grid) does with vertices.
+fn rounded_target(target: f64) -> f64 {
+    let cell = TARGET_CELL * target.log2().floor().exp2();
+    (target / cell).round() * cell
 }
 
 /// Reports the beginning of a step and returns its watch.

@@ -6,6 +6,10 @@
 //! areas are off, so that most of a fine mesh stays as the projection has it. Vertices of faces that would fold move
 //! less far.
 //!
+//! Areas leave open where vertices lie, so that noise in the input grows from step to step. So the vertices are first put
+//! on a grid that is fine beside faces and coarse beside noise ([`put_on_grid`]), as targets are rounded before: nearly the
+//! same map is laid out in the same places.
+//!
 //! At first every triangle has its own target. Then only polygons have: their triangles keep the shares that they have
 //! by then, so that rows of quads stay rows.
 //!
@@ -59,6 +63,9 @@ const LEAST_AREA: f64 = 0.4;
 /// Least area of a face that is already smaller than [`LEAST_AREA`], as a fraction of its present area.
 const LEAST_SHRINKING: f64 = 0.9;
 
+/// Width of the cells of the grid at a vertex, relative to the root of the least target of its faces.
+const CELL: f64 = 1.0 / 65_536.0;
+
 /// Bounds of the share that a triangle keeps of its polygon, as multiples of its share on the surface.
 const SHARES: [f64; 2] = [0.6, 1.6];
 
@@ -75,6 +82,27 @@ pub(super) struct Goal<'a> {
     pub tolerance: f64,
     /// Bound of the rounding of coordinates in the precision asked for.
     pub rounding: f64,
+}
+
+/// Moves vertices to the nearest points of a grid, where areas are off; no face folds.
+pub(super) fn put_on_grid<P: Projection>(chart: &mut Chart<'_, P>, goal: &Goal<'_>) {
+    let is_off = |(face, &area): (usize, &f64)| goal.is_off(Face::new(face), area);
+    if !signed_areas(&chart.images()).iter().enumerate().any(is_off) {
+        return;
+    }
+    let all: Vec<Face> = Face::all(goal.targets.len()).collect();
+    let patch = Patch::around(chart, goal.corners, goal.fixed, &all, 0);
+    let targets = patch.of_faces(goal.targets);
+    let start = patch.of_vertices(&chart.places);
+    let to_grid = parallel::map(start.len(), |vertex| {
+        let corners = patch.corners.of(Vertex::new(vertex));
+        let least = corners.iter().map(|corner| targets[corner.face()]).fold(f64::INFINITY, f64::min);
+        let cell = (CELL * least.sqrt()).log2().round().exp2();
+        start[vertex].map(|x| (x / cell).round() * cell - x)
+    });
+    let images = patch.images(chart);
+    let limits = Limits::new(&images, &signed_areas(&images), &targets, goal.rounding);
+    limits.moved(chart, &patch, &start, &to_grid);
 }
 
 /// Moves vertices so that the areas of triangles approach their targets. Folded faces may unfold; no other face folds.

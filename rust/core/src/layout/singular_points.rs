@@ -16,6 +16,7 @@ use crate::control::Watch;
 use crate::error::Error;
 use crate::mesh::Vertex;
 use crate::mesh::corners::VertexCorners;
+use crate::mesh::ties::rounded;
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -163,7 +164,8 @@ impl Neighborhood {
             costs.push((if keeps_its_place { 0.0 } else { cost } + DETOUR * detour, self.vertices[index]));
         }
         costs.retain(|&(cost, _)| cost.is_finite());
-        costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // the sort is stable: equal costs, as of the sides of a symmetric surface, stay in the order of distances
+        costs.sort_by(|a, b| rounded(a.0).total_cmp(&rounded(b.0)));
         costs.iter().map(|&(_, vertex)| vertex).collect()
     }
 
@@ -182,9 +184,10 @@ impl Neighborhood {
     }
 }
 
-/// The indices of the `count` smallest distances, smallest first.
+/// The indices of the `count` smallest distances, smallest first; of equal ones, up to rounding, the lowest first.
 fn nearest(distances: &[f64], count: usize) -> Vec<Vertex> {
-    let by_distance = |a: &Vertex, b: &Vertex| distances[*a].total_cmp(&distances[*b]).then(a.cmp(b));
+    let distance = |vertex: &Vertex| rounded(distances[*vertex]);
+    let by_distance = |a: &Vertex, b: &Vertex| distance(a).total_cmp(&distance(b)).then(a.cmp(b));
     let mut chosen: Vec<Vertex> = Vertex::all(distances.len()).collect();
     if chosen.len() > count {
         chosen.select_nth_unstable_by(count, by_distance);

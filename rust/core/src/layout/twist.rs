@@ -5,6 +5,7 @@
 //! farther out, and not at all where points are fixed. In the coordinate log tan (δ/2) of the distance δ from the
 //! center, an angle that falls linearly shears uniformly; here it falls by a smooth step.
 
+use crate::mesh::ties::first_largest;
 use crate::vector::Vector3;
 
 /// Width of the rigid ring beyond the circle of the moved point, as a fraction of the way to where the sphere rests.
@@ -66,11 +67,13 @@ impl Motion {
         if start.distance(goal) < 1e-15 {
             return Some(Self::rotation(goal, goal));
         }
-        centers(start, goal)
+        let twists: Vec<Twist> = centers(start, goal)
             .into_iter()
             .filter_map(|center| Twist::about(center, start, goal, fixed))
-            .min_by(|a, b| a.shear().total_cmp(&b.shear()))
-            .map(Self::Twist)
+            .collect();
+        // centers on either side of the way may give the same shear, up to rounding
+        let against_shear: Vec<f64> = twists.iter().map(|twist| -twist.shear()).collect();
+        first_largest(&against_shear).map(|best| Self::Twist(twists[best]))
     }
 
     /// Where a point of the unit sphere goes.
@@ -169,6 +172,21 @@ mod tests {
             assert_eq!(orientation(moved), orientation(corners));
         }
         assert!(farthest > 0.05);
+    }
+
+    #[test]
+    fn rounding_does_not_choose_the_side_of_a_twist() {
+        // both sides give the same shear where start, goal and the fixed point lie on a great circle
+        let goal = -Vector3::unit(2);
+        for k in 0..20 {
+            let angle = f64::from(k);
+            let start = Vector3([0.02 * angle.cos(), 0.02 * angle.sin(), -1.0]).normalized();
+            let Some(Motion::Twist(twist)) = Motion::twist(start, goal, &[Vector3::unit(2)]) else {
+                panic!("there is room")
+            };
+            let side = twist.center.dot(start.cross(goal));
+            assert!(side < 0.0, "{k}: {side}");
+        }
     }
 
     #[test]

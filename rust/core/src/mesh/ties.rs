@@ -7,7 +7,8 @@
 //! plane of symmetry. The preference turns with the surface, does not depend on the order of vertices, and changes
 //! smoothly. A value times one plus [`SHARE`] times the preference has no such ties.
 //!
-//! Surfaces with more symmetry than a mirror plane have fewer directions; ties that these leave go to the lowest index.
+//! Surfaces with more symmetry than a mirror plane have fewer directions. Ties that these leave go to the lowest index:
+//! values are compared up to rounding ([`first_largest`], [`rounded`]).
 
 use crate::parallel;
 use crate::vector::Vector3;
@@ -17,6 +18,22 @@ const SHARE: f64 = 1e-6;
 
 /// Length, relative to the size of the surface, up to which a direction is taken for zero.
 const NO_DIRECTION: f64 = 1e-9;
+
+/// Relative difference up to which two values are equal: more than rounding and noise, less than [`SHARE`].
+const EQUAL: f64 = 1e-9;
+
+/// The lowest index of the largest of `values`, up to rounding; `None` for an empty list.
+pub(crate) fn first_largest(values: &[f64]) -> Option<usize> {
+    let largest = values.iter().copied().max_by(f64::total_cmp)?;
+    values
+        .iter()
+        .position(|&value| value >= largest - EQUAL * largest.abs() || value.to_bits() == largest.to_bits())
+}
+
+/// A value near 1 or below as a multiple of what counts as equal, so that ties between sorted values go to the next key.
+pub(crate) fn rounded(value: f64) -> f64 {
+    (value / EQUAL).round()
+}
 
 /// The factor, near 1, for a value at each of the points (n, 3).
 pub(crate) fn tie_breakers(points: &[Vector3]) -> Vec<f64> {
@@ -78,6 +95,20 @@ mod tests {
         for (value, turned) in values.iter().rev().zip(tie_breakers(&turned)) {
             assert!((value - turned).abs() < 1e-14, "{value} {turned}");
         }
+    }
+
+    #[test]
+    fn the_first_of_equal_values_is_the_largest_whatever_rounding_says() {
+        let up = |x: f64| x * (1.0 + 1e-14);
+        assert_eq!(first_largest(&[1.0, 3.0, up(3.0), 2.0]), Some(1));
+        assert_eq!(first_largest(&[1.0, up(3.0), 3.0]), Some(1));
+        assert_eq!(first_largest(&[-3.0, -up(3.0), -4.0]), Some(0));
+        assert_eq!(first_largest(&[1.0, 1.0 + 1e-6]), Some(1));
+        assert_eq!(first_largest(&[1.0, f64::INFINITY]), Some(1));
+        assert_eq!(first_largest(&[f64::NAN]), Some(0));
+        assert_eq!(first_largest(&[]), None);
+        assert_eq!(rounded(0.3), rounded(up(0.3)));
+        assert!(rounded(0.3) < rounded(0.3 + 1e-8));
     }
 
     #[test]

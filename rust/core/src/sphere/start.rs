@@ -23,7 +23,7 @@ use crate::embedding::{Stop, progressive_sphere};
 use crate::energy::SpatialStretchEnergy;
 use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::geometry::{corner_cotangents, triangle};
-use crate::mesh::ties::tie_breakers;
+use crate::mesh::ties::{first_largest, tie_breakers};
 use crate::mesh::{TriangleMesh, Vertex};
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
@@ -174,8 +174,7 @@ fn roundest_face(mesh: &TriangleMesh) -> usize {
         let preference: f64 = mesh.faces()[face].iter().map(|&vertex| tie_breakers[vertex]).sum();
         preference * roundness(face)
     });
-    // max_by takes the last of equals, so search from the back
-    (0..values.len()).rev().max_by(|&a, &b| values[a].total_cmp(&values[b])).expect("a mesh has faces")
+    first_largest(&values).expect("a mesh has faces")
 }
 
 /// Solves L_II h_I = −L_IB h_B with the corners of the removed face held.

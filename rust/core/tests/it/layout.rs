@@ -61,6 +61,43 @@ fn a_refined_map_is_laid_out_with_the_parts_of_its_faces() {
     assert_eq!(layout.faces.mapv(|point| layout.vertex_of[point as usize].0), parts);
 }
 
+/// A ball with bumps that half a turn about the z axis takes to itself, and no mirror; with noise of about 10⁻¹².
+fn of_half_turn(seed: u32) -> Surface {
+    let ball = common::icosphere(3);
+    let noise = |k: usize| f64::from(seed) * 1e-12 * ((k * 7919) % 1000) as f64 / 1000.0;
+    let vertices: Vec<[f64; 3]> = (0..ball.vertices.len())
+        .map(|k| {
+            let [x, y, z] = ball.vertices[k];
+            let radius = 1.0 + 0.4 * (x * y + 0.5 * z * z * z);
+            [radius * x + noise(k), 1.2 * radius * y - noise(k + 1), 1.5 * radius * z + noise(k + 2)]
+        })
+        .collect();
+    Surface::new(aview2(&vertices), aview2(&ball.faces)).unwrap()
+}
+
+#[test]
+fn rounding_does_not_choose_between_the_sides_of_a_symmetric_surface() {
+    for kind in KINDS {
+        let options = LayoutOptions { kind, ..LayoutOptions::default() };
+        let of = |seed: u32| {
+            let surface = of_half_turn(seed);
+            let map = sphere_map(&surface, &SphereMapOptions::default(), &mut Silent).unwrap();
+            let layout = map.layout(&surface, &options, &mut Silent).unwrap();
+            (map.positions, layout)
+        };
+        let (map, layout) = of(0);
+        for seed in 1..6 {
+            let (other_map, other_layout) = of(seed);
+            let apart = (&other_map - &map).mapv(f64::abs).fold(0.0, |a: f64, &b| a.max(b));
+            assert!(apart < 1e-8, "{kind:?}, {seed}: maps differ by {apart}");
+            assert_eq!(other_layout.vertex_of, layout.vertex_of, "{kind:?}, {seed}");
+            let apart =
+                (&other_layout.points - &layout.points).mapv(f64::abs).fold(0.0, |a: f64, &b| a.max(b));
+            assert!(apart < 1e-8, "{kind:?}, {seed}: layouts differ by {apart}");
+        }
+    }
+}
+
 #[test]
 fn arrays_that_do_not_fit_are_refused() {
     let image = surface();

@@ -115,6 +115,11 @@ impl TriangleMesh {
         Self { points, ..self.clone() }
     }
 
+    /// The mesh with other [`Self::face_areas`].
+    pub(crate) fn with_areas(&self, areas: Vec<f64>) -> Self {
+        Self { areas, ..self.clone() }
+    }
+
     /// The surface with the opposite orientation: corners 1 and 2 of every face change places.
     pub(crate) fn turned_over(&self) -> Self {
         let faces: Vec<[Vertex; 3]> = self.faces.iter().map(|&[a, b, c]| [a, c, b]).collect();

@@ -15,6 +15,7 @@ use super::landmark_descent::Carrying;
 use super::landmarks::{Landmarks, best_turn, fewest};
 use super::options::{Energy, RegistrationOptions, SHARE_OF_DOMAIN};
 use super::result::{CarryingOptions, DiskRegistration, Registration};
+use super::start_grid::{start_image, start_mesh};
 use super::starts::{Rank, best_of};
 use super::surface::Start;
 use super::verdict::{MISSED, located, missed, verdict};
@@ -191,13 +192,19 @@ impl Pair<'_, '_> {
         let f = map(source, Side::Source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
         let g = map(target, Side::Target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
         // 2. The best rotation of the landmarks
-        let places = picked(&g, landmarks.target);
-        let turned = turned(source, &f, best_turn(&picked(&f, landmarks.source), &places));
+        let image = |mesh, map: &DiskMap| {
+            start_image(mesh, lifted(rows(map.uv.view())), CanonicalDomain::Disk, options.energy)
+        };
+        let [in_disk, target_in_disk] = [image(source, &f), image(target, &g)];
+        let places = picked(&target_in_disk, landmarks.target);
+        let turn = best_turn(&picked(&in_disk, landmarks.source), &places);
         // 3. h: the source's landmarks carried to the target's; if some are missed, the target's to the source's
-        let images = [turned, lifted(rows(g.uv.view()))];
-        let mut met = self.meet(images, landmarks, history, observer)?;
+        let images = [turned(source, in_disk, turn), target_in_disk];
+        let meshes = [source, target].map(|mesh| start_mesh(mesh, options.energy));
+        let meshes = [&*meshes[0], &*meshes[1]];
+        let mut met = self.meet(meshes, images, landmarks, history, observer)?;
         // 4. The source's boundary onto the target's, which is a polygon
-        let on_rim = met.onto_target([source, target], landmarks, options, history, observer)?;
+        let on_rim = met.onto_target(meshes, landmarks, options, history, observer)?;
         // 5. g⁻¹: the locations on the target
         let mut phase = Phase { whole: observer, from: 0.95, to: 1.0 };
         let locator = Locator::new(&met.target, target.faces());
@@ -210,16 +217,15 @@ impl Pair<'_, '_> {
     /// nearer.
     fn meet(
         &self,
+        [source, target]: [&TriangleMesh; 2],
         [source_image, target_image]: [Vec<Vector3>; 2],
         landmarks: &Landmarks<'_>,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<Meeting, Error> {
-        let &Self { meshes: [source, target], options, .. } = self;
-        let of = |image: &[Vector3], vertices: &[usize]| -> Vec<Vector3> {
-            vertices.iter().map(|&vertex| image[vertex]).collect()
-        };
-        let (ours, theirs) = (of(&source_image, landmarks.source), of(&target_image, landmarks.target));
+        let options = self.options;
+        let ours = picked(&source_image, landmarks.source);
+        let theirs = picked(&target_image, landmarks.target);
         let disk = |mesh, landmarks, places| Carrying {
             mesh,
             domain: CanonicalDomain::Disk,
@@ -320,19 +326,14 @@ impl Meeting {
 }
 
 /// A map rotated by an angle, or as it is if rounding would fold a sliver.
-fn turned(mesh: &TriangleMesh, map: &DiskMap, turn: f64) -> Vec<Vector3> {
+fn turned(mesh: &TriangleMesh, map: Vec<Vector3>, turn: f64) -> Vec<Vector3> {
     let (sine, cosine) = turn.sin_cos();
     let turned: Vec<[f64; 2]> =
-        rows(map.uv.view()).iter().map(|&[u, v]| [cosine * u - sine * v, sine * u + cosine * v]).collect();
-    if folded_in_plane(mesh.faces(), &turned).is_empty() {
-        lifted(&turned)
-    } else {
-        lifted(rows(map.uv.view()))
-    }
+        map.iter().map(|&Vector3([u, v, _])| [cosine * u - sine * v, sine * u + cosine * v]).collect();
+    if folded_in_plane(mesh.faces(), &turned).is_empty() { lifted(&turned) } else { map }
 }
 
 /// The images of some vertices.
-fn picked(map: &DiskMap, vertices: &[usize]) -> Vec<Vector3> {
-    let uv = rows(map.uv.view());
-    lifted(&vertices.iter().map(|&vertex| uv[vertex]).collect::<Vec<_>>())
+fn picked(map: &[Vector3], vertices: &[usize]) -> Vec<Vector3> {
+    vertices.iter().map(|&vertex| map[vertex]).collect()
 }

@@ -32,6 +32,7 @@ mod options;
 mod record;
 pub(super) mod result;
 mod sphere;
+mod start_grid;
 mod starts;
 mod strain;
 pub(crate) mod surface;

@@ -17,6 +17,7 @@ use super::landmark_descent::Carrying;
 use super::landmarks::{Landmarks, fewest};
 use super::options::{Energy, RegistrationOptions, SHARE_OF_DOMAIN, START_ANGLE_WEIGHTS};
 use super::result::{CarryingOptions, Registration, SphereRegistration};
+use super::start_grid::{start_image, start_mesh};
 use super::starts::{Rank, best_of};
 use super::surface::Start;
 use super::verdict::{MISSED, located, missed, verdict, worst};
@@ -318,7 +319,10 @@ impl Pair<'_, '_> {
         let f0 = map(source, Side::Source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
         let f1 = map(target, Side::Target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
         // 2. The source turned by landmarks, and bent by features; the middle of each pair
-        let [on_sphere, target_on_sphere] = [&f0, &f1].map(|map| vectors(map.positions.view()));
+        let image = |mesh, map: &SphereMap| {
+            start_image(mesh, vectors(map.positions.view()), CanonicalDomain::Sphere, options.energy)
+        };
+        let [on_sphere, target_on_sphere] = [image(source, &f0), image(target, &f1)];
         let by_landmarks = self
             .is_laid_by_landmarks()
             .then(|| turned(source, on_sphere.clone(), landmarks, &target_on_sphere));
@@ -344,11 +348,12 @@ impl Pair<'_, '_> {
             weight: options.weight,
             angle_weight,
         };
+        let [source, target] = [source, target].map(|mesh| start_mesh(mesh, options.energy));
         let mut phase = Phase { whole: observer, from: 0.6, to: 0.75 };
-        let (registered, first) = carrying(source, landmarks.source).carry(turned, history, &mut phase)?;
+        let (registered, first) = carrying(&source, landmarks.source).carry(turned, history, &mut phase)?;
         let mut phase = Phase { whole: observer, from: 0.75, to: 0.9 };
         let (target_registered, second) =
-            carrying(target, landmarks.target).carry(target_on_sphere, history, &mut phase)?;
+            carrying(&target, landmarks.target).carry(target_on_sphere, history, &mut phase)?;
         // 4. The source's locations on the target
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
         let status = worst([start, first, second]);

@@ -2,4 +2,6 @@
 //! Runs `mesh` of the library, which says what it looks for.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| authalic_fuzz::mesh::check(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    authalic_fuzz::mesh::check(bytes);
+});

@@ -2,4 +2,6 @@
 //! Runs `registration` of the library, which says what it looks for.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| authalic_fuzz::registration::check(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    authalic_fuzz::registration::check(bytes);
+});

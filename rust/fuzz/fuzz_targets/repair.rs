@@ -2,4 +2,6 @@
 //! Runs `repair` of the library, which says what it looks for.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| authalic_fuzz::repair::check(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    authalic_fuzz::repair::check(bytes);
+});

@@ -5,8 +5,8 @@ use authalic::{Boundary, DiskMapOptions, DiskMethod, disk_map};
 
 use super::Input;
 
-/// One run of the target.
-pub fn check(bytes: &[u8]) {
+/// One run of the target; whether it came to a result to look at.
+pub fn check(bytes: &[u8]) -> bool {
     let mut input = Input::new(bytes);
     let density: Vec<f64> = (0..input.byte() % 4).map(|_| input.real()).collect();
     let (is_dense, angle) = (!density.is_empty(), input.option([1e-3, 0.1, 10.0]));
@@ -32,12 +32,13 @@ pub fn check(bytes: &[u8]) {
     };
     let mut observer = input.patience();
     // Disks, spheres and tubes.
-    let Some(surface) = input.surface(3) else { return };
+    let Some(surface) = input.surface(3) else { return false };
     let density: Vec<f64> =
         density.iter().copied().cycle().take(if is_dense { surface.n_faces() } else { 0 }).collect();
     options.density = is_dense.then(|| ndarray::aview1(&density));
-    let Ok(map) = disk_map(&surface, &options, &mut observer) else { return };
+    let Ok(map) = disk_map(&surface, &options, &mut observer) else { return false };
     assert_eq!(map.uv.shape(), [surface.n_vertices(), 2]);
     assert!(map.uv.iter().all(|x| x.is_finite()), "coordinates that are no numbers");
     assert!(map.distortion.folded.is_empty(), "folded: {:?}", map.distortion.folded);
+    true
 }

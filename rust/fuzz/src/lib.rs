@@ -21,8 +21,8 @@ const MOST_VERTICES: usize = 120;
 type Vertices = Vec<[f64; 3]>;
 type Faces = Vec<[u32; 3]>;
 
-/// The name of a target, and one run of it on some bytes.
-pub type Target = (&'static str, fn(&[u8]));
+/// The name of a target, and one run of it on some bytes: whether it came to a result to look at.
+pub type Target = (&'static str, fn(&[u8]) -> bool);
 
 /// The targets by their names, which their folders in `corpus/` have too.
 pub const TARGETS: [Target; 7] = [

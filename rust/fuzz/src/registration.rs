@@ -6,8 +6,8 @@ use authalic::{register_disks, register_spheres};
 
 use super::Input;
 
-/// One run of the target.
-pub fn check(bytes: &[u8]) {
+/// One run of the target; whether it came to a result to look at.
+pub fn check(bytes: &[u8]) -> bool {
     let mut input = Input::new(bytes);
     let weights: Vec<f64> = (0..6).map(|_| input.option([1.0, 10.0, f64::INFINITY]).unwrap_or(1.0)).collect();
     let is_soft = input.bit();
@@ -22,7 +22,7 @@ pub fn check(bytes: &[u8]) {
     };
     let is_closed = input.bit();
     let mut observer = input.patience();
-    let (Some(source), Some(target)) = (input.surface(3), input.surface(3)) else { return };
+    let (Some(source), Some(target)) = (input.surface(3), input.surface(3)) else { return false };
     let count = input.below(6);
     let [sources, targets] = [&source, &target]
         .map(|side| (0..count).map(|_| input.below(side.n_vertices() + 1)).collect::<Vec<_>>());
@@ -35,11 +35,11 @@ pub fn check(bytes: &[u8]) {
         let result = register_disks(&source, &target, &landmarks, &options, &mut observer);
         result.map(|found| (found.correspondence, found.distortion, found.status))
     };
-    check_result(result);
+    check_result(result)
 }
 
-fn check_result(result: Result<(Correspondence, Distortion, Status), Error>) {
-    let Ok((map, distortion, status)) = result else { return };
+fn check_result(result: Result<(Correspondence, Distortion, Status), Error>) -> bool {
+    let Ok((map, distortion, status)) = result else { return false };
     assert!(map.positions().iter().all(|x| x.is_finite()), "positions that are no numbers");
     let n_faces = map.target_faces().nrows();
     assert!(map.triangles().iter().all(|&triangle| triangle < n_faces));
@@ -54,4 +54,5 @@ fn check_result(result: Result<(Correspondence, Distortion, Status), Error>) {
         "{status:?}, but folded: {:?}",
         distortion.folded
     );
+    true
 }

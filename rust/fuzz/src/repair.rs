@@ -5,8 +5,8 @@ use authalic::{CloseHandles, CloseHoles, Error, Keep, MeshError, RepairOptions, 
 
 use super::Input;
 
-/// One run of the target.
-pub fn check(bytes: &[u8]) {
+/// One run of the target; whether it came to a result to look at.
+pub fn check(bytes: &[u8]) -> bool {
     let mut input = Input::new(bytes);
     let options = RepairOptions {
         merge: input.option([0.0, 0.1, 1.0]),
@@ -26,7 +26,7 @@ pub fn check(bytes: &[u8]) {
         keep: if input.bit() { Keep::Largest } else { Keep::All },
     };
     let (vertices, faces) = input.arrays();
-    let Ok(repaired) = repair(vertices.view(), faces.view(), &options) else { return };
+    let Ok(repaired) = repair(vertices.view(), faces.view(), &options) else { return false };
     match repaired.surface.topology() {
         // A repair leaves one-sided pieces as they are.
         Ok(_) | Err(Error::Mesh(MeshError::NotOrientable { .. })) => {}
@@ -55,4 +55,5 @@ pub fn check(bytes: &[u8]) {
         },
     );
     assert!(again.is_ok(), "what was repaired is refused: {}", again.unwrap_err());
+    true
 }

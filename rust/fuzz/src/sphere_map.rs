@@ -5,8 +5,8 @@ use authalic::{LineSearch, SphereMapOptions, SphereMethod, sphere_map};
 
 use super::Input;
 
-/// One run of the target.
-pub fn check(bytes: &[u8]) {
+/// One run of the target; whether it came to a result to look at.
+pub fn check(bytes: &[u8]) -> bool {
     let mut input = Input::new(bytes);
     let density: Vec<f64> = (0..input.byte() % 4).map(|_| input.real()).collect();
     let is_dense = !density.is_empty();
@@ -28,14 +28,15 @@ pub fn check(bytes: &[u8]) {
     while !input.is_over() {
         bytes.push(input.byte());
     }
-    let Some(surface) = Input::new(&bytes).surface(3) else { return };
+    let Some(surface) = Input::new(&bytes).surface(3) else { return false };
     let density: Vec<f64> =
         density.iter().copied().cycle().take(if is_dense { surface.n_faces() } else { 0 }).collect();
     options.density = is_dense.then(|| ndarray::aview1(&density));
-    let Ok(map) = sphere_map(&surface, &options, &mut observer) else { return };
+    let Ok(map) = sphere_map(&surface, &options, &mut observer) else { return false };
     assert_eq!(map.positions.shape(), [surface.n_vertices(), 3]);
     for row in map.positions.rows() {
         assert!((row.dot(&row) - 1.0).abs() < 1e-9, "a vertex off the sphere: {row}");
     }
     assert!(map.distortion.folded.is_empty(), "folded: {:?}", map.distortion.folded);
+    true
 }

@@ -15,8 +15,8 @@ fn loop_normal(corners: &[Vector3]) -> Vector3 {
     edges(corners).fold(Vector3::ZERO, |sum, (from, to)| sum + area_vector([center, from, to]))
 }
 
-/// A point beside the centroid that lies on the line of no edge: the candidate whose thinnest fan triangle
-/// is fattest.
+/// A point beside the centroid that lies on the line of no edge: the candidate that rises most over the edge above which
+/// it is lowest, by its height over the length of the edge.
 pub(crate) fn apex_of(corners: &[Vector3]) -> Vector3 {
     let (center, normal) = (centroid(corners), loop_normal(corners));
     let length: f64 = edges(corners).map(|(from, to)| (to - from).norm()).sum();
@@ -28,12 +28,13 @@ pub(crate) fn apex_of(corners: &[Vector3]) -> Vector3 {
         directions.extend(edges(corners).take(1).map(|(from, to)| unit.cross(to - from)));
     }
     let candidates = directions.into_iter().map(|direction| center + direction * (0.1 * length));
-    let thinnest = |apex: &Vector3| {
+    // twice the area over the square of an edge is the height over its length
+    let least_height = |apex: &Vector3| {
         edges(corners)
             .map(|(from, to)| area([from, to, *apex]) / (to - from).dot(to - from))
             .fold(f64::INFINITY, f64::min)
     };
-    candidates.max_by(|a, b| thinnest(a).total_cmp(&thinnest(b))).expect("there are candidates")
+    candidates.max_by(|a, b| least_height(a).total_cmp(&least_height(b))).expect("there are candidates")
 }
 
 fn centroid(corners: &[Vector3]) -> Vector3 {

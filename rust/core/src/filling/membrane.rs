@@ -37,7 +37,7 @@ pub(crate) fn membrane(hole: &[Vertex], points: &mut Vec<Vector3>, faces: &mut V
     let mut thickness = 0.0;
     if let Some(places) = places(n_points, n_added, &faces[n_faces..], points) {
         points.extend(places);
-        thickness = thinnest(faces[n_faces..].iter().map(|face| face.map(|vertex| points[vertex])));
+        thickness = least_thickness(faces[n_faces..].iter().map(|face| face.map(|vertex| points[vertex])));
     }
     if thickness > THINNEST {
         return;
@@ -45,7 +45,7 @@ pub(crate) fn membrane(hole: &[Vertex], points: &mut Vec<Vector3>, faces: &mut V
     // 3. Or a cone
     let rim: Vec<Vector3> = hole.iter().map(|&vertex| points[vertex]).collect();
     let apex = apex_of(&rim);
-    if thinnest((0..rim.len()).map(|k| [rim[k], rim[(k + 1) % rim.len()], apex])) >= thickness {
+    if least_thickness((0..rim.len()).map(|k| [rim[k], rim[(k + 1) % rim.len()], apex])) >= thickness {
         points.truncate(n_points);
         faces.truncate(n_faces);
         points.push(apex);
@@ -63,7 +63,8 @@ pub(crate) fn is_fat(corners: [Vector3; 3]) -> bool {
     thickness(corners) > THINNEST
 }
 
-fn thinnest(faces: impl Iterator<Item = [Vector3; 3]>) -> f64 {
+/// Thickness of the thinnest of some faces.
+fn least_thickness(faces: impl Iterator<Item = [Vector3; 3]>) -> f64 {
     faces.map(thickness).fold(f64::INFINITY, f64::min)
 }
 
@@ -125,4 +126,40 @@ fn places(first: usize, count: usize, faces: &[[Vertex; 3]], points: &[Vector3])
     }
     solve_general(&matrix.to_csc(), &mut rhs).ok()?;
     Some((0..count).map(|row| Vector3::from_fn(|axis| rhs[axis * count + row])).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The rim of a hole with its filling: the points, and the corners of the new faces.
+    fn filled(rim: &[[f64; 3]]) -> (Vec<Vector3>, Vec<[Vector3; 3]>) {
+        let mut points: Vec<Vector3> = rim.iter().map(|&point| Vector3(point)).collect();
+        let hole: Vec<Vertex> = (0..rim.len()).map(Vertex::new).collect();
+        let mut faces = Vec::new();
+        membrane(&hole, &mut points, &mut faces);
+        let corners = faces.iter().map(|face| face.map(|vertex| points[vertex])).collect();
+        (points, corners)
+    }
+
+    #[test]
+    fn a_hole_so_thin_that_a_cone_would_be_flat_keeps_its_membrane() {
+        // the first edge is short, and the tip of the cone lies in line with it but for rounding
+        let thin = 2e-8;
+        let rim = [[0.0, 1.0, 0.0], [thin, 1.0, 0.0], [-thin, thin, 0.0], [-thin, 2.0, 0.0]];
+        let apex = apex_of(&rim.map(Vector3));
+        assert!(thickness([Vector3(rim[0]), Vector3(rim[1]), apex]) < 1e-15);
+        let (points, faces) = filled(&rim);
+        let middle = rim.iter().map(|&point| Vector3(point) * 0.25).sum();
+        assert!(points.len() == 5 && points[4].distance(middle) < 1e-15);
+        assert_eq!(faces.len(), 4);
+        assert!(faces.into_iter().all(|corners| thickness(corners) > 1e-9));
+    }
+
+    #[test]
+    fn a_hole_whose_membrane_would_be_flat_gets_a_cone() {
+        let (points, faces) = filled(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
+        assert_eq!((points.len(), faces.len()), (4, 3));
+        assert!(faces.into_iter().all(is_fat));
+    }
 }

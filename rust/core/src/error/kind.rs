@@ -147,6 +147,75 @@ kinds! {
     }
 }
 
+impl ErrorKind {
+    /// Whether it is a fault of single elements, which [`repair`](crate::repair()) takes away by its default options where
+    /// that leaves any face: vertices that are NaN or infinite, faces with a vertex twice, on the vertices of others or
+    /// without area, edges with three faces or more, vertices at which parts only touch, and loose ones. No other kind is,
+    /// though a repair mends some more meshes: surfaces in pieces or open ones whose vertices coincide, pinholes.
+    pub const fn is_mended_by_repair(self) -> bool {
+        // without a wildcard, so that each new kind is decided upon
+        match self {
+            Self::NotFinite
+            | Self::RepeatedVertex
+            | Self::DuplicateFace
+            | Self::ZeroArea
+            | Self::NonManifoldEdge
+            | Self::NonManifoldVertex
+            | Self::LooseVertex => true,
+            Self::NoVertices
+            | Self::NoFaces
+            | Self::TooManyFaces
+            | Self::IndexOutOfRange
+            | Self::NotOrientable
+            | Self::SeveralComponents
+            | Self::ClosedSurface
+            | Self::OpenSurface
+            | Self::Handles
+            | Self::SeveralBoundaries
+            | Self::SeamNotEdge
+            | Self::InvalidArray
+            | Self::InvalidOption
+            | Self::InvalidDensity
+            | Self::MapNotFinite
+            | Self::InitialBoundary
+            | Self::InitialSphere
+            | Self::NoDirection
+            | Self::NoRectangle
+            | Self::FixedFold
+            | Self::OutlineFold
+            | Self::LandmarkCounts
+            | Self::TooFewLandmarks
+            | Self::RepeatedLandmark
+            | Self::LandmarkOnBoundary
+            | Self::CurveCounts
+            | Self::NoCurves
+            | Self::ShortCurve
+            | Self::CurveOffEdges
+            | Self::CurveMeetsItself
+            | Self::CurvesMeet
+            | Self::CurveOnBoundary
+            | Self::CurveNotClosed
+            | Self::CurveBoundsOneSide
+            | Self::CurveSides
+            | Self::CurveDivides
+            | Self::LoopCounts
+            | Self::LoopSides
+            | Self::TooFewFeatures
+            | Self::Mirrored
+            | Self::UncuttableCurve
+            | Self::NoArc
+            | Self::FactorizationFailed
+            | Self::NoHyperbolicMetric
+            | Self::NoEmbedding
+            | Self::StillFolded
+            | Self::LayoutFold
+            | Self::OutOfMemory
+            | Self::Cancelled
+            | Self::Internal => false,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::ErrorKind;

@@ -263,21 +263,6 @@ impl MeshError {
         }
     }
 
-    /// Whether it is a fault of single elements, which [`repair`](crate::repair()) takes away by its default options where
-    /// that leaves any face. It may mend others too: surfaces in pieces or open ones whose vertices coincide.
-    pub(super) fn is_mended_by_repair(&self) -> bool {
-        matches!(
-            self,
-            Self::NonFinite { .. }
-                | Self::RepeatedVertex { .. }
-                | Self::DuplicateFaces { .. }
-                | Self::ZeroArea { .. }
-                | Self::NonManifoldEdges { .. }
-                | Self::NonManifoldVertices { .. }
-                | Self::UnreferencedVertices { .. }
-        )
-    }
-
     /// The error with other numbers for the vertices and faces at fault.
     pub(super) fn renumbered(
         mut self,

@@ -27,7 +27,7 @@ pub(crate) mod unfold;
 use ndarray::{Array2, aview2};
 
 use crate::arrays::{from_rows, rows_of};
-use crate::control::{History, Observer, Status};
+use crate::control::{History, Observer, Rising, Status};
 use crate::distortion::{Distortion, Image, measure, targets};
 use crate::error::Error;
 use crate::mesh::{Surface, TriangleMesh};
@@ -90,6 +90,8 @@ pub(crate) fn map_disk(
     options: &DiskMapOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<DiskMap, Error> {
+    // who has ended the run is asked no more
+    let observer: &mut dyn Observer = &mut Rising::new(observer);
     let mut history = History::start();
     let options = &options.by_ref();
     // 1. Check the surface and the options

@@ -22,7 +22,7 @@ use super::verdict::{MISSED, located, missed, verdict};
 use crate::arrays::{from_rows, rows, vectors};
 use crate::codomain::CanonicalDomain;
 use crate::codomain::planar::{flat, lifted};
-use crate::control::{History, Observer, Phase, Status};
+use crate::control::{History, Observer, Phase, Rising, Status};
 use crate::disk::{DiskMap, DiskMapOptions, map_disk};
 use crate::distortion::{Image, folded_in_plane, measure};
 use crate::error::{Error, Side};
@@ -69,6 +69,8 @@ pub fn register_disks(
             register_disks,
         );
     }
+    // who has ended the run is asked no more
+    let observer: &mut dyn Observer = &mut Rising::new(observer);
     let mut history = History::start();
     // 1. Refuse what cannot be registered before any work
     let (source, target) = meshes(source_surface, target_surface)?;

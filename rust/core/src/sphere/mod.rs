@@ -24,7 +24,7 @@ pub(crate) mod unfold;
 use ndarray::{Array2, Axis, Slice, aview2};
 
 use crate::arrays::{from_vectors, rows_of, vectors};
-use crate::control::{History, Observer, Phase, Status};
+use crate::control::{History, Observer, Phase, Rising, Status};
 use crate::distortion::{Distortion, Image, measure, targets};
 use crate::error::Error;
 use crate::mesh::{Surface, TriangleMesh, Vertex, index_array};
@@ -153,6 +153,8 @@ pub(crate) fn map_sphere(
     options: &SphereMapOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<SphereMap, Error> {
+    // who has ended the run is asked no more
+    let observer: &mut dyn Observer = &mut Rising::new(observer);
     let mut history = History::start();
     let options = &options.by_ref();
     if options.fill_holes && !mesh.topology().is_closed() {

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Disk maps by their properties, on every test mesh that is a disk.
 
-use crate::common::cancelling::{CancelAt, count_reports};
+use crate::common::cancelling::cancelled_everywhere;
 use crate::common::public::{disk_map, planar};
 use authalic::testing::{TriangleMesh, doubled_area, folded_in_plane};
-use authalic::{
-    Boundary, DiskMap, DiskMapOptions, DiskMethod, Error, MapError, MeshError, Silent, Status, Vertex,
-};
+use authalic::{Boundary, DiskMap, DiskMapOptions, DiskMethod, Error, MapError, MeshError, Silent, Vertex};
 use ndarray::{aview1, aview2};
 use std::f64::consts::TAU;
 
@@ -196,15 +194,13 @@ fn a_cancelled_run_returns_a_sound_map() {
     let mesh = common::bumpy_disk(12).mesh();
     for method in METHODS {
         let options = DiskMapOptions { method, ..Default::default() };
-        let reports = count_reports(|observer| disk_map(&mesh, &options, observer).unwrap());
-        // the last report tells that the run is done
-        for after in 0..reports - 1 {
-            let mut observer = CancelAt::after(after);
-            let map = disk_map(&mesh, &options, &mut observer).unwrap();
-            assert_eq!(map.status == Status::Cancelled, observer.has_cancelled, "{method:?} after {after}");
-            assert!(!observer.asks_again);
-            assert_bijective(&mesh, &map);
-        }
+        cancelled_everywhere(
+            |observer| disk_map(&mesh, &options, observer),
+            |map, _| {
+                assert_bijective(&mesh, map);
+                map.status
+            },
+        );
     }
 }
 

@@ -2,7 +2,7 @@
 //! How a run of the default method goes and ends: energies, angles against areas, densities, start maps, cancel,
 //! threads, and that neither place, size nor numbering of a surface matters.
 
-use crate::common::cancelling::{CancelAt, count_reports};
+use crate::common::cancelling::cancelled_everywhere;
 use crate::common::closed::{
     assert_bijective, bumpy, dot, image_areas, radial, rotation, round_tube, spiky_spheres,
 };
@@ -314,24 +314,6 @@ fn start_maps_of_spheres_are_improved_and_folded_ones_unfolded() {
 
 // Cancel, limits, threads
 
-/// Runs a computation once to the end and then once to each of its reports, which cancels it there.
-fn cancelled_everywhere<T>(
-    run: impl Fn(&mut dyn authalic::Observer) -> Result<T, Error>,
-    check: impl Fn(&T) -> Status,
-) {
-    let reports = count_reports(|observer| check(&run(observer).expect("a map")));
-    // the last report tells that the run is done
-    for last in 0..reports - 1 {
-        let mut observer = CancelAt::after(last);
-        match run(&mut observer) {
-            Ok(map) => assert_eq!(check(&map) == Status::Cancelled, observer.has_cancelled, "after {last}"),
-            Err(error) => {
-                assert!(matches!(error, Error::CancelledEarly) && observer.has_cancelled, "{error}")
-            }
-        }
-    }
-}
-
 #[test]
 fn a_run_cancelled_at_any_report_returns_a_sound_map() {
     let [rough, finger] = [rough_disk(&mut Random::new(345)), without_vertex(round_tube(12.0, 6), 0)];
@@ -340,7 +322,7 @@ fn a_run_cancelled_at_any_report_returns_a_sound_map() {
             let options = DiskMapOptions { boundary, ..Default::default() };
             cancelled_everywhere(
                 |observer| disk_map(&mesh, &options, observer),
-                |map| {
+                |map, _| {
                     assert_one_to_one(&mesh, planar(&map.uv), boundary, "cancelled");
                     map.status
                 },
@@ -350,7 +332,7 @@ fn a_run_cancelled_at_any_report_returns_a_sound_map() {
     for mesh in [bumpy(), spiky_spheres()[1].mesh(), round_tube(12.0, 6).mesh()] {
         cancelled_everywhere(
             |observer| sphere_map(&mesh, &SphereMapOptions::default(), observer),
-            |map| {
+            |map, _| {
                 assert_bijective(&mesh, &spatial(&map.positions), "cancelled");
                 map.status
             },

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! How a run onto the sphere goes and ends: start maps, progress, cancel, limits and tolerances.
 
-use crate::common::cancelling::{CancelAt, count_reports};
+use crate::common::cancelling::cancelled_everywhere;
 use crate::common::public::{array, spatial, sphere_map};
 use authalic::testing::{TriangleMesh, Vector3};
 use authalic::{Error, MapError, SphereMap, SphereMapOptions, SphereMethod, Status};
@@ -142,16 +142,14 @@ fn progress_never_goes_back_and_ends_at_1() {
 #[test]
 fn a_run_cancelled_at_any_report_returns_a_sound_map() {
     for (mesh, options) in runs() {
-        let reports = count_reports(|observer| sphere_map(&mesh, &options, observer).unwrap());
-        // the last report tells that the run is done
-        for last in 0..reports - 1 {
-            let mut observer = CancelAt::after(last);
-            let map = sphere_map(&mesh, &options, &mut observer).unwrap();
-            assert_eq!(map.status == Status::Cancelled, observer.has_cancelled, "after {last}");
-            assert!(!observer.asks_again);
-            assert_bijective(&mesh, &spatial(&map.positions), "cancelled");
-            assert!(map.history.iterations() <= last);
-        }
+        cancelled_everywhere(
+            |observer| sphere_map(&mesh, &options, observer),
+            |map, reports| {
+                assert_bijective(&mesh, &spatial(&map.positions), "cancelled");
+                assert!(map.history.iterations() <= reports);
+                map.status
+            },
+        );
     }
 }
 

@@ -63,6 +63,14 @@ const SIDES: usize = 8;
 /// What is added to a side that was too small.
 const SPARE: f64 = 0.02;
 
+/// How much rounding may add to a coordinate, over its largest part: at most eight operations (three each for the turn and
+/// for the offset, one for the scale, one for the sum) have errors of half an ε, and twice that is on the safe side.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// The share of the square that may be left free at each side against rounding: a scale is positive even for islands that
+/// are moved so far that nothing is left of their shape.
+const MOST_ROUNDING: f64 = 0.25;
+
 /// Options of [`pack`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PackOptions {
@@ -285,7 +293,7 @@ fn in_unit_square(arrangement: &Arrangement, &PackOptions { margin, aspect, .. }
     let whole = side + 2.0 * gap;
     // What rounding may add to a coordinate: the more, the farther an island is moved.
     let farthest = places.iter().flat_map(|place| place.offset).fold(*side, |most, x| most.max(x.abs()));
-    let rounding = (8.0 * f64::EPSILON * farthest / whole).min(0.25);
+    let rounding = (ROUNDING * farthest / whole).min(MOST_ROUNDING);
     let scale = (1.0 - 2.0 * rounding) / whole;
     let places = places.iter().map(|&Placed { angle, offset }| {
         let offset = offset.map(|x| rounding + scale * (gap + x));

@@ -23,9 +23,12 @@ def soon(count):
         time.sleep(0.01)
     return threads()
 before, maps = threads(), []
+MARKS = [10, 100, 200]
 for count in (3, 1, 5):
     authalic.set_threads(count)
-    maps.append(authalic.disk_map(*meshes.bumpy_cap()).uv.tobytes())
+    cap = meshes.bumpy_cap()
+    found = authalic.register_disks(cap, cap, source_landmarks=MARKS, target_landmarks=MARKS)
+    maps.append(authalic.disk_map(*cap).uv.tobytes() + found.positions.tobytes())
     assert soon(before + count) == before + count, (count, threads() - before)
 assert len(set(maps)) == 1
 """

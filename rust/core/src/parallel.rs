@@ -65,7 +65,7 @@ fn threads() -> Option<Arc<ThreadPool>> {
     pool.as_ref().map(|pool| pool.threads.clone())
 }
 
-/// Runs `work` on the threads of this process, so that [`join`] finds them; where there are none, on this one.
+/// Runs `work` on the threads of this process, so that what it computes finds them; where there are none, on this one.
 pub(crate) fn install<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     if IS_ALONE.get() || is_sharing() {
         return work();
@@ -76,12 +76,12 @@ pub(crate) fn install<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     }
 }
 
-/// Runs both closures, at the same time where a thread is free and [`install`] has been called around it.
+/// Runs both closures on the threads of this process, at the same time where one is free.
 pub(crate) fn join<A: Send, B: Send>(
     one: impl FnOnce() -> A + Send,
     other: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    if is_sharing() { rayon::join(one, other) } else { (one(), other()) }
+    install(|| if is_sharing() { rayon::join(one, other) } else { (one(), other()) })
 }
 
 /// Calls `work(first index, chunk)` for every chunk of `length` elements, on all threads where there are
@@ -198,6 +198,21 @@ mod tests {
         assert_eq!(on(1).to_bits(), on(2).to_bits());
         assert_eq!(on(1).to_bits(), on(7).to_bits());
         assert!((on(1) - (100_003_f64.ln() + 0.577_215_664_9)).abs() < 1e-4);
+    }
+
+    #[test]
+    fn both_sides_of_a_join_run_on_the_threads_of_this_process() {
+        let is_one_of_them = || {
+            let thread = std::thread::current();
+            thread.name().is_some_and(|name| name.starts_with("authalic "))
+        };
+        // the threads cannot be had while another test asks for them
+        let mut tries = (0..1000).map(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+            join(is_one_of_them, is_one_of_them)
+        });
+        assert!(tries.any(|both| both == (true, true)));
+        assert_eq!(lone_tasks(1, |_| join(|| 1, || 2)), [(1, 2)]);
     }
 
     #[test]

@@ -313,10 +313,6 @@ mod tests {
     /// With these exponents faces of little distortion exceed the slack of the guard too.
     const STEEP: FaceEnergy = FaceEnergy { area_weight: 3.0, angle_weight: 3.0, both_ways: false };
 
-    fn placed(energy: &SurfaceEnergy<'_>, sample: &Sample) -> Vec<Placed> {
-        sample.start.iter().map(|&location| energy.target.placed(location)).collect()
-    }
-
     /// The slope of a function of a place along a vector, by a central difference.
     fn slope(
         energy: &SurfaceEnergy<'_>,
@@ -344,7 +340,7 @@ mod tests {
                 let mut problem = sample.problem();
                 problem.face_energy = kind;
                 let mut energy = SurfaceEnergy::new(&problem, Guard { weight: 0.7, slack });
-                let map = placed(&energy, &sample);
+                let map = sample.placed_on(&energy.target);
                 energy.subdivide(&map);
                 for face in 0..energy.areas.len() {
                     let corners = energy.corners(&map, face);
@@ -376,7 +372,7 @@ mod tests {
         problem.face_energy = STEEP;
         let value_with = |guard: Guard| {
             let energy = SurfaceEnergy::new(&problem, guard);
-            let map = placed(&energy, &sample);
+            let map = sample.placed_on(&energy.target);
             energy.face_values(&map)
         };
         let without = value_with(NO_GUARD);
@@ -408,7 +404,7 @@ mod tests {
             target: (0..2 * sample.target.n_vertices()).map(|i| number(1000 + i)).collect(),
         };
         let energy = SurfaceEnergy::new(&problem, NO_GUARD);
-        let map = placed(&energy, &sample);
+        let map = sample.placed_on(&energy.target);
         for vertex in Vertex::all(n) {
             let frame = energy.target.frame(map[vertex].location.triangle);
             let expansion = energy.vertex_expansion(vertex, &map[vertex], &frame);
@@ -443,7 +439,7 @@ mod tests {
         let mut problem = sample.problem();
         problem.pulls = vec![Pull { vertex: Vertex(5), place: Vertex(30), weight: 2.5 }];
         let energy = SurfaceEnergy::new(&problem, NO_GUARD);
-        let map = placed(&energy, &sample);
+        let map = sample.placed_on(&energy.target);
         let area: f64 = sample.target.face_areas().iter().sum();
         let there = sample.start[5].point_on(sample.target.points(), sample.target.faces());
         let distance = there.distance(sample.target.points()[30]);
@@ -457,7 +453,7 @@ mod tests {
         let sample = Sample::spheres();
         let problem = sample.problem();
         let energy = SurfaceEnergy::new(&problem, NO_GUARD);
-        let map = placed(&energy, &sample);
+        let map = sample.placed_on(&energy.target);
         for face in 0..energy.areas.len() {
             let [a, b, c] = energy.corners(&map, face);
             assert!(energy.face_value(face, [a, b, c]).is_finite());
@@ -490,7 +486,7 @@ mod tests {
         let sample = Sample::spheres();
         let problem = sample.problem();
         let energy = SurfaceEnergy::new(&problem, NO_GUARD);
-        let map = placed(&energy, &sample);
+        let map = sample.placed_on(&energy.target);
         // 1. Without a guard it is the mean of the distortion
         let [whole, mean] = [energy.value(&map), energy.mean_distortion(&map)];
         assert!((whole - mean).abs() < 1e-12 * whole);

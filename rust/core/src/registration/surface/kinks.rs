@@ -243,8 +243,7 @@ mod tests {
             let sample = spikes(lengths);
             let problem = sample.problem();
             let energy = SurfaceEnergy::new(&problem, GUARD);
-            let place = |&location: &Location| energy.target.placed(location);
-            let map: Vec<Placed> = sample.start.iter().map(place).collect();
+            let map = sample.placed_on(&energy.target);
             let before = energy.star_value(&map, Vertex(0), &map[0], f64::INFINITY);
             let course = energy.course(&map, Vertex(0));
             assert_eq!(course.frame == [Vector3::ZERO; 2], is_held);
@@ -291,7 +290,7 @@ mod tests {
         let sample = Sample::spheres();
         let problem = sample.problem();
         let energy = SurfaceEnergy::new(&problem, GUARD);
-        let map: Vec<Placed> = sample.start.iter().map(|&location| energy.target.placed(location)).collect();
+        let map = sample.placed_on(&energy.target);
         let mut n_along = 0;
         for vertex in Vertex::all(map.len()) {
             // 1. At each vertex of the target to which it can move
@@ -325,8 +324,7 @@ mod tests {
         let problem = sample.problem();
         let energy = SurfaceEnergy::new(&problem, GUARD);
         let inside = Location { barycentric: [0.2, 0.3, 0.5], ..sample.start[4] };
-        let mut map: Vec<Placed> =
-            sample.start.iter().map(|&location| energy.target.placed(location)).collect();
+        let mut map = sample.placed_on(&energy.target);
         map[4] = energy.target.placed(inside);
         let course = energy.course(&map, Vertex(4));
         assert_eq!((course.location, course.edge), (inside, None));

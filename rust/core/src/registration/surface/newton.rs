@@ -442,7 +442,7 @@ mod tests {
         let faces = sample.source.faces();
         let analysis = Analysis::new(motions.len(), faces, &dofs, Order::Sparse).unwrap();
         let mut factor = Factor::new(&analysis);
-        let map = sample.start.iter().map(|&location| energy.target.placed(location)).collect();
+        let map = sample.placed_on(&energy.target);
         let mut moving = Moving::new(energy, motions, map);
         for _ in 0..n {
             let before = energy.value(&moving.map);

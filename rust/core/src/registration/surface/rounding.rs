@@ -116,7 +116,7 @@ mod tests {
         let energy = SurfaceEnergy::new(&problem, GUARD);
         let mut motions = vec![Motion::Free; sample.start.len()];
         motions[5] = Motion::Held;
-        let map: Vec<Placed> = sample.start.iter().map(|&location| energy.target.placed(location)).collect();
+        let map = sample.placed_on(&energy.target);
         let mut moving = Moving::new(&energy, &motions, map.clone());
         moving.round(&Colors::new(&sample.source, &motions));
         assert_eq!(moving.map[5], map[5]);

@@ -3,6 +3,7 @@
 
 use super::density::FaceEnergy;
 use super::problem::{Start, SurfaceProblem};
+use super::target::{Placed, Target};
 use crate::codomain::CanonicalDomain;
 use crate::location::tests::{Map, number, octasphere, rings};
 use crate::location::{Location, Locator};
@@ -94,6 +95,11 @@ impl Sample {
         let source = mesh(points.iter().map(|&x| turned(bumpy(x))), &faces);
         let start = Vertex::all(points.len()).map(|vertex| at_vertex(&target, vertex)).collect();
         Self { source, target, domain: CanonicalDomain::Sphere, target_in_domain: points, start }
+    }
+
+    /// The start, placed on the target.
+    pub(super) fn placed_on(&self, target: &Target<'_>) -> Vec<Placed> {
+        self.start.iter().map(|&location| target.placed(location)).collect()
     }
 
     /// The places of the start, moved by noise where they lie within a face.

@@ -278,10 +278,6 @@ mod tests {
 
     const NO_GUARD: Guard = Guard { weight: 0.0, slack: 0.0 };
 
-    fn placed(target: &Target<'_>, sample: &Sample) -> Vec<Placed> {
-        sample.start.iter().map(|&location| target.placed(location)).collect()
-    }
-
     #[test]
     fn parts_are_similar_and_fill_the_face() {
         let corners = [Vector3([0.0, 0.0, 0.0]), Vector3([3.0, 0.0, 0.0]), Vector3([1.0, 2.0, 0.0])];
@@ -309,12 +305,12 @@ mod tests {
         assert_eq!([0, 4, 5, 12, 13, 25, 1000].map(count), [1, 1, 2, 2, 3, 4, 4]);
         for sample in [Sample::coarse_sphere(), Sample::coarse_disk()] {
             let target = Target::new(&sample.target, &sample.target_in_domain, sample.domain);
-            let subdivision = Subdivision::new(&sample.source, &target, &placed(&target, &sample));
+            let subdivision = Subdivision::new(&sample.source, &target, &sample.placed_on(&target));
             assert!(subdivision.counts.iter().any(|&count| count > 1));
         }
         for sample in [Sample::spheres(), Sample::disks()] {
             let target = Target::new(&sample.target, &sample.target_in_domain, sample.domain);
-            let subdivision = Subdivision::new(&sample.source, &target, &placed(&target, &sample));
+            let subdivision = Subdivision::new(&sample.source, &target, &sample.placed_on(&target));
             assert!(subdivision.counts.iter().all(|&count| count == 1));
         }
     }
@@ -324,7 +320,7 @@ mod tests {
         let sample = Sample::spheres();
         let problem = sample.problem();
         let mut energy = SurfaceEnergy::new(&problem, Guard { weight: 0.7, slack: 3.0 });
-        let map = placed(&energy.target, &sample);
+        let map = sample.placed_on(&energy.target);
         let before = energy.value(&map);
         energy.subdivide(&map);
         assert_eq!(energy.value(&map), before);
@@ -335,7 +331,7 @@ mod tests {
         let sample = Sample::coarse_disk();
         let (flat, in_domain) = flat_disk(12);
         let target = Target::new(&flat, &in_domain, CanonicalDomain::Disk);
-        let map = placed(&target, &sample);
+        let map = sample.placed_on(&target);
         let problem = crate::registration::surface::SurfaceProblem {
             target: &flat,
             target_points: flat.points(),
@@ -369,7 +365,7 @@ mod tests {
     fn walks_arrive_where_the_locator_does() {
         for sample in [Sample::coarse_sphere(), Sample::coarse_disk()] {
             let target = Target::new(&sample.target, &sample.target_in_domain, sample.domain);
-            let map = placed(&target, &sample);
+            let map = sample.placed_on(&target);
             let locator = Locator::new(&sample.target_in_domain, sample.target.faces());
             let mut n_walks = 0;
             for face in sample.source.faces() {

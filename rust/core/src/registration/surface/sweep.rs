@@ -160,8 +160,7 @@ mod tests {
         let sample = Sample::turned_ball();
         let problem = sample.problem();
         let energy = SurfaceEnergy::new(&problem, GUARD);
-        let right: Vec<Placed> =
-            sample.start.iter().map(|&location| energy.target.placed(location)).collect();
+        let right = sample.placed_on(&energy.target);
         for vertex in Vertex::all(right.len()) {
             // 1. Most of the way to a neighbor
             let mut aside = right.clone();
@@ -187,7 +186,7 @@ mod tests {
         let sample = Sample::turned_ball();
         let problem = sample.problem();
         let energy = SurfaceEnergy::new(&problem, GUARD);
-        let map: Vec<Placed> = sample.start.iter().map(|&location| energy.target.placed(location)).collect();
+        let map = sample.placed_on(&energy.target);
         let motions = vec![Motion::Free; map.len()];
         let mut moving = Moving::new(&energy, &motions, map.clone());
         moving.sweep(&Colors::new(&sample.source, &motions));

@@ -209,6 +209,25 @@ def test_what_a_repair_mends_is_told_so(balls, side):
         assert caught.value.side == side
 
 
+@pytest.mark.parametrize("ends", [(0, 0), (0.01, 0.02)], ids=["corners in one place", "on a line"])
+def test_faces_without_area_are_named_and_mended(balls, ends):
+    source, target = balls
+    vertices = target.vertices.copy()
+    first, *others = target.faces[300]
+    for vertex, along in zip(others, ends, strict=True):
+        vertices[vertex] = vertices[first] + [along, 0, 0]
+    marks = {"source_landmarks": [0, 7, 100], "target_landmarks": [0, 7, 100]}
+    words = r"^the target: no area in .*\b300\b.*: the corners lie on a line; .*authalic\.repair mends this"
+    flat = meshes.Mesh(vertices, target.faces)
+    with pytest.raises(authalic.MeshError, match=words) as caught:
+        authalic.register_spheres(source, flat, **marks)
+    assert (caught.value.kind, caught.value.side) == ("zero_area", "target")
+    assert 300 in caught.value.indices
+    found = authalic.register_spheres(source, flat, **marks, repair=True)
+    assert found.target_repaired.counts["faces_without_area"] > 0
+    assert found.status == "converged"
+
+
 def test_maps_of_other_vertices_are_refused():
     mesh = band()
     sphere = mesh.vertices / np.linalg.norm(mesh.vertices, axis=1, keepdims=True)

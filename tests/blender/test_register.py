@@ -394,10 +394,31 @@ def test_empty_target() -> None:
     refusal("Empty has no faces")
 
 
-def test_faces_without_area() -> None:
+def test_no_face_has_an_area() -> None:
     _, target = balls()
     target.data.vertices.foreach_set("co", np.zeros(3 * len(target.data.vertices), np.float32))
     refusal("Twin: .*area")
+
+
+@pytest.mark.parametrize("ends", [(0, 0), (1 / 64, 1 / 32)], ids=["corners in one place", "on a line"])
+def test_faces_without_area_are_named_with_what_removes_them(ends: tuple[float, float]) -> None:
+    source, target = balls()
+    first, *others = (target.data.vertices[vertex] for vertex in target.data.polygons[100].vertices)
+    corner = [round(64 * x) / 64 for x in first.co]
+    first.co = corner
+    for vertex, along in zip(others, ends, strict=True):
+        vertex.co = [corner[0] + along, *corner[1:]]
+    refusal(
+        r"Twin: no area in (face 100|triangles of faces \(([\d…]+, )*100(, [\d…]+)*\)): the corners lie on a "
+        r"line; remove these faces \(Mesh > Clean Up > Degenerate Dissolve\)"
+    )
+    meshes.select(target)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.dissolve_degenerate()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    meshes.select(source)
+    assert register() == {"FINISHED"}
 
 
 def test_bad_coordinate_of_the_target() -> None:

@@ -67,6 +67,13 @@ fn threads() -> Option<Arc<ThreadPool>> {
 
 /// Runs `work` on the threads of this process, so that what it computes finds them; where there are none, on this one.
 pub(crate) fn install<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    let (mut work, mut result) = (Some(work), None);
+    on_the_threads(&mut || result = work.take().map(|work| work()));
+    result.expect("the work is done")
+}
+
+/// [`install`] of work behind a pointer, so that rayon is compiled once.
+fn on_the_threads(work: &mut (dyn FnMut() + Send)) {
     if IS_ALONE.get() || is_sharing() {
         return work();
     }

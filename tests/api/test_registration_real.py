@@ -213,12 +213,26 @@ def test_a_head_onto_a_head():
     assert_what_the_papers_reach(pairs.register(pair), pair)
 
 
-@pytest.mark.parametrize(("source", "target"), [("388", "391"), ("385", "388"), ("381", "393")])
-def test_noise_does_not_move_one_animal_on_another(source, target):
-    rng = np.random.default_rng(11)
+def animals(source, target):
+    """Two animals of SHREC'07 with all of their landmarks."""
     files = [surface(f"bench/shrec07/{name}.npz") for name in (source, target)]
-    landmarks = [arrays["landmarks"] for _, arrays in files]
-    plain = pairs.Pair(files[0][0], files[1][0], *landmarks)
+    return pairs.Pair(files[0][0], files[1][0], *(arrays["landmarks"] for _, arrays in files))
+
+
+def poses(source, target):
+    """Two poses of TOSCA with eight of their true correspondences."""
+    files = [surface(f"bench/tosca/{name}.npz") for name in (source, target)]
+    marks = np.linspace(0, len(files[0][1]["corres"]) - 1, 8).astype(int)
+    return pairs.Pair(files[0][0], files[1][0], *(arrays["corres"][marks] for _, arrays in files))
+
+
+@pytest.mark.parametrize(
+    ("bodies", "source", "target"),
+    [(animals, "388", "391"), (animals, "385", "388"), (animals, "381", "393"), (poses, "cat0", "cat7")],
+)
+def test_noise_does_not_move_one_body_on_another(bodies, source, target):
+    rng = np.random.default_rng(11)
+    plain = bodies(source, target)
 
     def noisy(mesh):
         return meshes.Mesh(
@@ -229,3 +243,15 @@ def test_noise_does_not_move_one_animal_on_another(source, target):
     here, there = (pairs.register(pair, energy="surface") for pair in (plain, moved))
     assert here.status == "converged"
     assert np.abs(here.positions - there.positions).max() <= 1e-6 * pairs.size(plain.target)
+
+
+def test_one_animal_on_another_turns_with_the_animals():
+    pair = animals("388", "391")
+    turn, _ = np.linalg.qr(np.random.default_rng(5).standard_normal((3, 3)))
+    turn *= np.sign(np.linalg.det(turn))
+    moved = pair._replace(
+        source=meshes.Mesh(pair.source.vertices @ turn.T, pair.source.faces),
+        target=meshes.Mesh(pair.target.vertices @ turn, pair.target.faces),
+    )
+    here, there = (pairs.register(each, energy="surface") for each in (pair, moved))
+    assert np.abs(there.positions @ turn.T - here.positions).max() <= 1e-6 * pairs.size(pair.target)

@@ -68,6 +68,19 @@ def test_noise_moves_little(pair):
     assert np.abs(here.positions - there.positions).max() <= 1e-6 * pairs.size(pair.target)
 
 
+@all_pairs
+def test_the_map_turns_and_grows_with_the_surfaces(pair):
+    turn, _ = np.linalg.qr(np.random.default_rng(5).standard_normal((3, 3)))
+    turn *= np.sign(np.linalg.det(turn))
+    place = lambda mesh: meshes.Mesh(3 * mesh.vertices @ turn + [1.0, -2.0, 0.5], mesh.faces)  # noqa: E731
+    here = register(pair).positions
+    there = register(pair._replace(source=place(pair.source))).positions
+    assert np.abs(there - here).max() <= 1e-6 * pairs.size(pair.target)
+    there = register(pair._replace(target=place(pair.target))).positions
+    back = (there - [1.0, -2.0, 0.5]) @ turn.T / 3
+    assert np.abs(back - here).max() <= 1e-6 * pairs.size(pair.target)
+
+
 @both
 def test_threads_change_no_bit(pair):
     try:

@@ -26,7 +26,7 @@ pub(crate) mod unfold;
 
 use ndarray::{Array2, aview2};
 
-use crate::arrays::{from_rows, rows_of};
+use crate::arrays::{from_rows, rows, rows_of};
 use crate::control::{History, Observer, Rising, Status};
 use crate::distortion::{Distortion, Image, measure, targets};
 use crate::error::Error;
@@ -55,6 +55,18 @@ pub struct DiskMap {
     pub distortion: Distortion,
     /// Wall time of the whole call.
     pub seconds: f64,
+}
+
+impl DiskMap {
+    /// The map with figures for a surface that differs from the one that was mapped; its areas are the targets.
+    ///
+    /// # Errors
+    /// Faces without area.
+    pub(crate) fn measured_on(self, mesh: &TriangleMesh) -> Result<Self, Error> {
+        let image = Image::Plane(rows(self.uv.view()));
+        let distortion = measure(mesh.points(), mesh.faces(), image, mesh.face_areas())?;
+        Ok(Self { distortion, ..self })
+    }
 }
 
 /// Maps a disk to the unit disk so that areas are preserved.

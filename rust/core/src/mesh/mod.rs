@@ -13,6 +13,7 @@ mod fans;
 pub mod geometry;
 mod indices;
 pub mod orientation;
+pub(crate) mod own_frame;
 pub(crate) mod polygon;
 pub(crate) mod renumbering;
 mod soup;

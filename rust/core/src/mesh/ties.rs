@@ -3,21 +3,18 @@
 //!
 //! A choice of the best of many vertices or faces has ties if the surface is its own mirror image, and the last bit
 //! would decide. So every vertex gets a preference, a function of its place along three directions of the surface
-//! itself: its third moment, the image of that under the covariance, and their cross product, which is normal to a
-//! plane of symmetry. The preference turns with the surface, does not depend on the order of vertices, and changes
+//! itself ([`OwnFrame`]). The preference turns with the surface, does not depend on the order of vertices, and changes
 //! smoothly. A value times one plus [`SHARE`] times the preference has no such ties.
 //!
 //! Surfaces with more symmetry than a mirror plane have fewer directions. Ties that these leave go to the lowest index:
 //! values are compared up to rounding ([`first_largest`], [`rounded`]).
 
+use super::own_frame::OwnFrame;
 use crate::parallel;
 use crate::vector::Vector3;
 
 /// Largest relative change of a value by a preference: more than noise, less than matters.
 const SHARE: f64 = 1e-6;
-
-/// Length, relative to the size of the surface, up to which a direction is taken for zero.
-const NO_DIRECTION: f64 = 1e-9;
 
 /// Relative difference up to which two values are equal: more than rounding and noise, less than [`SHARE`].
 const EQUAL: f64 = 1e-9;
@@ -37,30 +34,10 @@ pub(crate) fn rounded(value: f64) -> f64 {
 
 /// The factor, near 1, for a value at each of the points (n, 3).
 pub(crate) fn tie_breakers(points: &[Vector3]) -> Vec<f64> {
-    let n = points.len();
-    let mean = |value: &(dyn Fn(Vector3) -> Vector3 + Sync)| -> Vector3 {
-        Vector3(parallel::sums(n, |v| value(points[v]).into())) * (1.0 / n as f64)
-    };
-    // 1. Centered, of unit size
-    let center = mean(&|x| x);
-    let size = parallel::sum(n, |v| (points[v] - center).dot(points[v] - center) / n as f64).sqrt();
-    let standardized = |x: Vector3| (x - center) * (1.0 / size.max(f64::MIN_POSITIVE));
-    // 2. The directions of the surface
-    let skewness = mean(&|x| standardized(x) * standardized(x).dot(standardized(x)));
-    let stretched = mean(&|x| standardized(x) * standardized(x).dot(skewness));
-    let across = stretched - skewness * (stretched.dot(skewness) / skewness.dot(skewness));
-    let directions = [skewness, across, skewness.cross(across)].map(unit);
-    // 3. A generic combination
-    let [a, b, c] = directions;
+    let frame = OwnFrame::of(points);
+    let [a, b, c] = frame.axes;
     let generic = a * 0.5 + (b * 0.31 + c * 0.19);
-    parallel::map(n, |v| 1.0 + SHARE * standardized(points[v]).dot(generic).tanh())
-}
-
-/// The unit vector along `x`; zero if `x` is too short.
-fn unit(x: Vector3) -> Vector3 {
-    let length = x.norm();
-    // a NaN gives zero too
-    if length > NO_DIRECTION { x * (1.0 / length) } else { Vector3::ZERO }
+    parallel::map(points.len(), |v| 1.0 + SHARE * frame.standardized(points[v]).dot(generic).tanh())
 }
 
 #[cfg(test)]

@@ -115,9 +115,9 @@ impl TriangleMesh {
         Self { points, ..self.clone() }
     }
 
-    /// The mesh with other [`Self::face_areas`].
-    pub(crate) fn with_areas(&self, areas: Vec<f64>) -> Self {
-        Self { areas, ..self.clone() }
+    /// The surface with other points, between which every face must have an area.
+    pub(crate) fn reshaped(&self, points: Vec<Vector3>) -> Self {
+        Self { areas: geometry::face_areas(&points, &self.faces), ..self.at_points(points) }
     }
 
     /// The surface with the opposite orientation: corners 1 and 2 of every face change places.

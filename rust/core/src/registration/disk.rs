@@ -15,7 +15,7 @@ use super::landmark_descent::Carrying;
 use super::landmarks::{Landmarks, best_turn, fewest};
 use super::options::{Energy, RegistrationOptions, SHARE_OF_DOMAIN};
 use super::result::{CarryingOptions, DiskRegistration, Registration};
-use super::start_grid::{start_image, start_mesh};
+use super::start_grid::StartSurface;
 use super::starts::{Rank, best_of};
 use super::surface::Start;
 use super::verdict::{MISSED, located, missed, verdict};
@@ -185,7 +185,10 @@ impl Pair<'_, '_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<Laid, Error> {
-        let &Self { meshes: [source, target], options, .. } = self;
+        let options = self.options;
+        let of_side = [landmarks.source, landmarks.target];
+        let starts = [0, 1].map(|side| StartSurface::new(self.meshes[side], of_side[side], options.energy));
+        let [source, target]: [&TriangleMesh; 2] = [&starts[0].mesh, &starts[1].mesh];
         // 1. Both surfaces to the disk
         let alone = DiskMapOptions { angle_weight: options.angle_weight_in_domain(), ..Default::default() };
         let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
@@ -194,25 +197,24 @@ impl Pair<'_, '_> {
         let f = map(source, Side::Source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
         let g = map(target, Side::Target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
         // 2. The best rotation of the landmarks
-        let image = |mesh, map: &DiskMap| {
-            start_image(mesh, lifted(rows(map.uv.view())), CanonicalDomain::Disk, options.energy)
-        };
-        let [in_disk, target_in_disk] = [image(source, &f), image(target, &g)];
+        let [in_disk, target_in_disk] = [&f, &g].map(|map| lifted(rows(map.uv.view())));
         let places = picked(&target_in_disk, landmarks.target);
         let turn = best_turn(&picked(&in_disk, landmarks.source), &places);
         // 3. h: the source's landmarks carried to the target's; if some are missed, the target's to the source's
         let images = [turned(source, in_disk, turn), target_in_disk];
-        let meshes = [source, target].map(|mesh| start_mesh(mesh, options.energy));
-        let meshes = [&*meshes[0], &*meshes[1]];
-        let mut met = self.meet(meshes, images, landmarks, history, observer)?;
-        // 4. The source's boundary onto the target's, which is a polygon
-        let on_rim = met.onto_target(meshes, landmarks, options, history, observer)?;
+        let mut met = self.meet([source, target], images, landmarks, history, observer)?;
+        // 4. The source's boundary onto the target's, which is a polygon; where that bends the target itself says
+        let on_rim = met.onto_target([source, self.meshes[1]], landmarks, options, history, observer)?;
         // 5. g⁻¹: the locations on the target
         let mut phase = Phase { whole: observer, from: 0.95, to: 1.0 };
         let locator = Locator::new(&met.target, target.faces());
         let (mut locations, status) = located(&locator, &met.source, met.status, &mut phase)?;
         on_rim.set(&mut locations);
-        Ok(Laid { maps: [f, g], met, on_rim, locations, energy: f64::INFINITY, status })
+        let maps = match options.energy {
+            Energy::Surface => [f.measured_on(self.meshes[0])?, g.measured_on(self.meshes[1])?],
+            Energy::Area => [f, g],
+        };
+        Ok(Laid { maps, met, on_rim, locations, energy: f64::INFINITY, status })
     }
 
     /// Carries the source's landmarks to the target's; if some are missed also the target's to the source's, if that is

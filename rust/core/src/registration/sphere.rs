@@ -17,7 +17,7 @@ use super::landmark_descent::Carrying;
 use super::landmarks::{Landmarks, fewest};
 use super::options::{Energy, RegistrationOptions, SHARE_OF_DOMAIN, START_ANGLE_WEIGHTS};
 use super::result::{CarryingOptions, Registration, SphereRegistration};
-use super::start_grid::{start_image, start_mesh};
+use super::start_grid::{StartSurface, turned_back};
 use super::starts::{Rank, best_of};
 use super::surface::Start;
 use super::verdict::{MISSED, located, missed, verdict, worst};
@@ -46,6 +46,9 @@ const SWEEPS: usize = 4;
 
 /// Distance up to which exact landmarks of coarse meshes have met; else the whole surfaces are laid over each other.
 const MET: f64 = 1e-9;
+
+/// Sine of the angle between two points up to which they lie about one axis.
+const ON_ONE_AXIS: f64 = 0.1;
 
 /// Weight, against that of a landmark, of the wish to rotate as little as possible.
 const LEAST_TURN: f64 = 1e-9;
@@ -111,7 +114,7 @@ pub fn register_spheres(
     };
     let laid = match options.energy {
         Energy::Area => pair.laid(options.angle_weight_in_domain(), landmarks, &mut history, observer)?,
-        Energy::Surface => pair.descended(&mut history, observer)?,
+        Energy::Surface => pair.descended(&mut history, observer)?.turned_back(pair.meshes)?,
     };
     let Laid { maps: [f0, f1], registered: [registered, target_registered], locations, status, .. } = laid;
     // 3. Figures
@@ -168,6 +171,8 @@ struct Pair<'a, 'f> {
 
 /// Two spheres over each other.
 struct Laid {
+    /// The axes of their frames, see [`StartSurface`]: f₀ is in that of the source, all else in that of the target.
+    axes: [[Vector3; 3]; 2],
     /// f₀ and f₁.
     maps: [SphereMap; 2],
     /// h₀∘f₀ and h₁∘f₁.
@@ -177,6 +182,25 @@ struct Laid {
     /// The energy between the surfaces; infinite before the descent.
     energy: f64,
     status: Status,
+}
+
+impl Laid {
+    /// The same in the coordinates of the `given` surfaces, with the figures of their maps; a map stays as it is where
+    /// rounding would fold a sliver.
+    fn turned_back(self, given: [&TriangleMesh; 2]) -> Result<Self, Error> {
+        let folds = |mesh: &TriangleMesh, map: &[Vector3]| !folded_on_sphere(mesh.faces(), map).is_empty();
+        let turned = |side: usize, map: SphereMap| {
+            let turned = turned_back(self.axes[side], &vectors(map.positions.view()));
+            let positions = if folds(given[side], &turned) { map.positions } else { from_vectors(turned) };
+            SphereMap { positions, ..map }.measured_on(given[side])
+        };
+        let [f0, f1] = self.maps;
+        let maps = [turned(0, f0)?, turned(1, f1)?];
+        let both = self.registered.each_ref().map(|map| turned_back(self.axes[1], map));
+        let registered =
+            if (0..2).any(|side| folds(given[side], &both[side])) { self.registered } else { both };
+        Ok(Self { maps, registered, ..self })
+    }
 }
 
 impl Pair<'_, '_> {
@@ -235,12 +259,13 @@ impl Pair<'_, '_> {
         let of_positions = |k: usize, map: Vec<Vector3>| SphereMap::of_positions(self.meshes[k], map, status);
         let maps = [of_positions(0, f0)?, of_positions(1, f1)?];
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
-        self.located(maps, registered, status, &mut phase).map(Some)
+        self.located(laid.axes, maps, registered, status, &mut phase).map(Some)
     }
 
     /// The source's locations on the target: h₁⁻¹.
     fn located(
         &self,
+        axes: [[Vector3; 3]; 2],
         maps: [SphereMap; 2],
         registered: [Vec<Vector3>; 2],
         status: Status,
@@ -248,7 +273,7 @@ impl Pair<'_, '_> {
     ) -> Result<Laid, Error> {
         let locator = Locator::new(&registered[1], self.meshes[1].faces());
         let (locations, status) = located(&locator, &registered[0], status, observer)?;
-        Ok(Laid { maps, registered, locations, energy: f64::INFINITY, status })
+        Ok(Laid { axes, maps, registered, locations, energy: f64::INFINITY, status })
     }
 
     /// After the descent between the surfaces.
@@ -272,7 +297,7 @@ impl Pair<'_, '_> {
         let Lowered { locations, registered, energy, status } =
             between.lower(locations.clone(), history, observer);
         let [_, target_registered] = laid.registered;
-        Laid { maps: laid.maps, registered: [registered, target_registered], locations, energy, status }
+        Laid { registered: [registered, target_registered], locations, energy, status, ..laid }
     }
 
     /// The number of exact pairs of landmarks that do not meet; on coarse meshes they must meet exactly.
@@ -310,7 +335,10 @@ impl Pair<'_, '_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<Laid, Error> {
-        let &Self { meshes: [source, target], signals, options, .. } = self;
+        let &Self { signals, options, .. } = self;
+        let of_side = [landmarks.source, landmarks.target];
+        let starts = [0, 1].map(|side| StartSurface::new(self.meshes[side], of_side[side], options.energy));
+        let [source, target]: [&TriangleMesh; 2] = [&starts[0].mesh, &starts[1].mesh];
         // 1. Both surfaces to the sphere
         let alone = SphereMapOptions { angle_weight, ..Default::default() };
         let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
@@ -319,13 +347,10 @@ impl Pair<'_, '_> {
         let f0 = map(source, Side::Source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
         let f1 = map(target, Side::Target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
         // 2. The source turned by landmarks, and bent by features; the middle of each pair
-        let image = |mesh, map: &SphereMap| {
-            start_image(mesh, vectors(map.positions.view()), CanonicalDomain::Sphere, options.energy)
-        };
-        let [on_sphere, target_on_sphere] = [image(source, &f0), image(target, &f1)];
+        let [on_sphere, target_on_sphere] = [&f0, &f1].map(|map| vectors(map.positions.view()));
         let by_landmarks = self
             .is_laid_by_landmarks()
-            .then(|| turned(source, on_sphere.clone(), landmarks, &target_on_sphere));
+            .then(|| turned(&starts, on_sphere.clone(), landmarks, &target_on_sphere));
         let (turned, start) = match by_landmarks {
             Some(turned) if options.features.is_none() => (turned, Status::Converged),
             by_landmarks => aligned(
@@ -348,16 +373,16 @@ impl Pair<'_, '_> {
             weight: options.weight,
             angle_weight,
         };
-        let [source, target] = [source, target].map(|mesh| start_mesh(mesh, options.energy));
         let mut phase = Phase { whole: observer, from: 0.6, to: 0.75 };
-        let (registered, first) = carrying(&source, landmarks.source).carry(turned, history, &mut phase)?;
+        let (registered, first) = carrying(source, landmarks.source).carry(turned, history, &mut phase)?;
         let mut phase = Phase { whole: observer, from: 0.75, to: 0.9 };
         let (target_registered, second) =
-            carrying(&target, landmarks.target).carry(target_on_sphere, history, &mut phase)?;
+            carrying(target, landmarks.target).carry(target_on_sphere, history, &mut phase)?;
         // 4. The source's locations on the target
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
         let status = worst([start, first, second]);
-        self.located([f0, f1], [registered, target_registered], status, &mut phase)
+        let axes = starts.each_ref().map(|start| start.axes);
+        self.located(axes, [f0, f1], [registered, target_registered], status, &mut phase)
     }
 }
 
@@ -382,23 +407,37 @@ fn volume(mesh: &TriangleMesh) -> f64 {
 /// The source's map rotated so that its landmarks come nearest to the target's, or as it is if rounding would
 /// fold a sliver.
 fn turned(
-    source: &TriangleMesh,
+    starts: &[StartSurface<'_>; 2],
     f0: Vec<Vector3>,
     landmarks: &Landmarks<'_>,
     f1: &[Vector3],
 ) -> Vec<Vector3> {
-    let (ours, theirs): (Vec<Vector3>, Vec<Vector3>) =
-        pairs(landmarks, &f0, f1).into_iter().map(|[p, q]| (p, q)).unzip();
-    // the least of equally good rotations, as about the axis of two opposite landmarks
-    let axes = [0, 1, 2].map(Vector3::unit);
-    let weights = [vec![1.0; ours.len()], vec![LEAST_TURN; 3]].concat();
-    let (ours, theirs) = ([&ours[..], &axes].concat(), [&theirs[..], &axes].concat());
+    let pairs = pairs(landmarks, &f0, f1);
+    let (mut ours, mut theirs): (Vec<Vector3>, Vec<Vector3>) = pairs.iter().map(|&[p, q]| (p, q)).unzip();
+    let mut weights = vec![1.0; ours.len()];
+    if !determine_rotation(&pairs) {
+        // the least of equally good rotations
+        let axes = [0, 1, 2].map(Vector3::unit);
+        ours.extend(axes.map(|axis| starts[0].turned(axis)));
+        theirs.extend(axes.map(|axis| starts[1].turned(axis)));
+        weights.extend([LEAST_TURN; 3]);
+    }
     let rotation = best_rotation(&ours, &theirs, &weights);
     let turned = parallel::map(f0.len(), |vertex| {
         let turned = rotate(rotation, f0[vertex]);
         turned.normalized()
     });
-    if folded_on_sphere(source.faces(), &turned).is_empty() { turned } else { f0 }
+    if folded_on_sphere(starts[0].mesh.faces(), &turned).is_empty() { turned } else { f0 }
+}
+
+/// Whether only one rotation lays the first points of the pairs best over the second ones: some do not lie about one axis,
+/// as those of two opposite landmarks do.
+fn determine_rotation(pairs: &[[Vector3; 2]]) -> bool {
+    let spread = |i: usize, j: usize| {
+        let across = [0, 1].map(|side| pairs[i][side].cross(pairs[j][side]).norm());
+        across[0].min(across[1])
+    };
+    (0..pairs.len()).any(|i| (0..i).any(|j| spread(i, j) > ON_ONE_AXIS))
 }
 
 /// The places of the landmarks of each pair on the sphere, the source's first.

@@ -116,6 +116,17 @@ impl SphereMap {
             filling: None,
         })
     }
+
+    /// The map with figures for a surface that differs from the one that was mapped; its areas are the targets.
+    ///
+    /// # Errors
+    /// Faces without area.
+    pub(crate) fn measured_on(self, mesh: &TriangleMesh) -> Result<Self, Error> {
+        let targets = mesh.face_areas().to_vec();
+        let image = Image::Sphere(&vectors(self.positions.view()));
+        let distortion = measure(mesh.points(), mesh.faces(), image, &targets)?;
+        Ok(Self { distortion, targets, ..self })
+    }
 }
 
 /// Maps a closed surface of genus 0 onto the unit sphere so that areas are preserved.

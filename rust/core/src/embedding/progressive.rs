@@ -17,6 +17,7 @@ use super::kernel::kernel_centroid;
 use super::star::{Star, angle};
 use crate::codomain::motion::{Motion, rotated};
 use crate::control::{Observer, Phase, Status};
+use crate::mesh::ties::{first_smallest, smallest_first};
 use crate::mesh::{TriangleMesh, Vertex};
 use crate::vector::Vector3;
 
@@ -197,7 +198,8 @@ impl<'a> Embedding<'a> {
     fn lay_base(&mut self) -> Option<usize> {
         let all = Vertex::all(self.mesh.n_vertices());
         let mut base: Vec<Vertex> = all.filter(|&vertex| !self.decimation.is_gone(vertex)).collect();
-        base.sort_by(|&a, &b| self.decimation.preference(a).total_cmp(&self.decimation.preference(b)));
+        let preferences: Vec<f64> = base.iter().map(|&vertex| self.decimation.preference(vertex)).collect();
+        base = smallest_first(&preferences).into_iter().map(|k| base[k]).collect();
         self.placed.clone_from(&base);
         let third = 3f64.sqrt().recip();
         let (c, s) = (-0.5, 0.75f64.sqrt());
@@ -267,7 +269,9 @@ impl<'a> Embedding<'a> {
         let places =
             ARC_PARTS.iter().flat_map(|part| [part * arc, arc - part * arc]).map(|a| rotated(before, a));
         let energies = places.filter_map(|place| Some((self.star.energy(place, self.shape)?, place)));
-        energies.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)
+        // a place and its mirror image on the arc may be equally good
+        let (energies, places): (Vec<f64>, Vec<Vector3>) = energies.unzip();
+        first_smallest(energies.into_iter()).map(|best| places[best])
     }
 
     /// One Newton step of every vertex in turn.

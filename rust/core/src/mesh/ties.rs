@@ -9,6 +9,8 @@
 //! Surfaces with more symmetry than a mirror plane have fewer directions. Ties that these leave go to the lowest index:
 //! values are compared up to rounding ([`first_largest`], [`rounded`]).
 
+use std::collections::BTreeSet;
+
 use super::own_frame::OwnFrame;
 use crate::parallel;
 use crate::vector::Vector3;
@@ -19,17 +21,76 @@ const SHARE: f64 = 1e-6;
 /// Relative difference up to which two values are equal: more than rounding and noise, less than [`SHARE`].
 const EQUAL: f64 = 1e-9;
 
+/// About [`EQUAL`] as a difference of the bits of two values.
+const EQUAL_BITS: u64 = 1 << 22;
+
 /// The lowest index of the largest of `values`, up to rounding; `None` for an empty list.
 pub(crate) fn first_largest(values: &[f64]) -> Option<usize> {
     let largest = values.iter().copied().max_by(f64::total_cmp)?;
-    values
-        .iter()
-        .position(|&value| value >= largest - EQUAL * largest.abs() || value.to_bits() == largest.to_bits())
+    values.iter().position(|&value| are_equal(value, largest) || value.to_bits() == largest.to_bits())
 }
 
 /// A value near 1 or below as a multiple of what counts as equal, so that ties between sorted values go to the next key.
 pub(crate) fn rounded(value: f64) -> f64 {
     (value / EQUAL).round()
+}
+
+/// The places of values, the largest first; of those that are equal but for rounding, the lowest first.
+pub(crate) fn largest_first(values: &[f64]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+    order.chunk_by_mut(|&a, &b| are_equal(values[a], values[b])).for_each(<[usize]>::sort_unstable);
+    order
+}
+
+/// The places of values, the smallest first; of those that are equal but for rounding, the lowest first.
+pub(crate) fn smallest_first(values: &[f64]) -> Vec<usize> {
+    let negative: Vec<f64> = values.iter().map(|value| -value).collect();
+    largest_first(&negative)
+}
+
+/// The place of the smallest of values; of those that are equal but for rounding, the lowest.
+pub(crate) fn first_smallest(values: impl Iterator<Item = f64>) -> Option<usize> {
+    let values: Vec<f64> = values.collect();
+    let least = values.iter().copied().min_by(f64::total_cmp)?;
+    values.iter().position(|&value| are_equal(value, least))
+}
+
+/// A length or cost as a multiple of a small unit: sums are exact then, and mirror images of a path are equal whatever
+/// the noise.
+pub(crate) fn on_grid(value: f64) -> f64 {
+    const UNIT: f64 = 1.0 / (1 << 24) as f64;
+    (value / UNIT).round().max(1.0) * UNIT
+}
+
+/// Sort keys that have come up so far, of which those that are equal but for noise are one.
+///
+/// Rounding does not do for many keys: some would lie at the border of two cells, and noise would choose between these.
+#[derive(Debug, Default)]
+pub(crate) struct DistinctKeys(BTreeSet<u64>);
+
+impl DistinctKeys {
+    /// The first key that came up within a distance of this one, or itself.
+    pub(crate) fn one_of_equals(&mut self, key: u64, within: u64) -> u64 {
+        let equals = key.saturating_sub(within)..=key.saturating_add(within);
+        if let Some(&known) = self.0.range(equals).next() {
+            return known;
+        }
+        self.0.insert(key);
+        key
+    }
+
+    /// [`Self::one_of_equals`] of values that are not negative, equal up to rounding.
+    pub(crate) fn one_of_equal_values(&mut self, value: f64) -> f64 {
+        // the bits of such values are ordered as the values are
+        f64::from_bits(self.one_of_equals(value.to_bits(), EQUAL_BITS))
+    }
+}
+
+/// Whether two values are equal but for rounding.
+pub(crate) fn are_equal(a: f64, b: f64) -> bool {
+    let apart = (a - b).abs();
+    a == b || (apart.is_finite() && apart <= EQUAL * a.abs().max(b.abs()))
 }
 
 /// The factor, near 1, for a value at each of the points (n, 3).
@@ -86,6 +147,27 @@ mod tests {
         assert_eq!(first_largest(&[]), None);
         assert_eq!(rounded(0.3), rounded(up(0.3)));
         assert!(rounded(0.3) < rounded(0.3 + 1e-8));
+    }
+
+    #[test]
+    fn rounding_does_not_order_equal_values() {
+        let values = [2.0, 3.0 - 1e-13, 1.0, 3.0, f64::INFINITY, 2.0 + 1e-13, f64::INFINITY];
+        assert_eq!(largest_first(&values), [4, 6, 1, 3, 0, 5, 2]);
+        assert_eq!(smallest_first(&values), [2, 0, 5, 1, 3, 4, 6]);
+        assert!(largest_first(&[]).is_empty());
+        assert_eq!(first_smallest([2.0, 1.0 + 1e-13, 1.0].into_iter()), Some(1));
+        assert_eq!(first_smallest(std::iter::empty()), None);
+    }
+
+    #[test]
+    fn keys_that_are_equal_but_for_noise_are_one() {
+        let mut keys = DistinctKeys::default();
+        let given = [100, 130, 109, 91, 120, 111];
+        assert_eq!(given.map(|key| keys.one_of_equals(key, 10)), [100, 130, 100, 100, 130, 111]);
+        let mut keys = DistinctKeys::default();
+        let given = [0.3, 0.3 + 1e-14, 0.3 + 1e-8, 0.3 - 1e-14, 0.0, f64::INFINITY];
+        let expected = [0.3, 0.3, 0.3 + 1e-8, 0.3, 0.0, f64::INFINITY];
+        assert_eq!(given.map(|value| keys.one_of_equal_values(value)), expected);
     }
 
     #[test]

@@ -7,6 +7,7 @@
 
 use super::corners::EdgeTable;
 use super::orientation::Orientation;
+use super::ties::largest_first;
 use super::{Corner, Face, Vertex, geometry};
 use crate::vector::Vector3;
 
@@ -20,7 +21,7 @@ pub struct Topology {
     /// Whether the faces can be oriented consistently.
     pub orientable: bool,
     /// The boundary loops as vertex lists, the surface on the left of travel. Each starts at its smallest
-    /// vertex; the longest (by length in space) comes first, at a tie the one with the smallest vertex.
+    /// vertex; the longest (by length in space) comes first, of equals but for rounding that with the smallest vertex.
     pub boundary_loops: Vec<Vec<Vertex>>,
     /// The lowest face of each component.
     pub first_faces: Vec<Face>,
@@ -121,9 +122,8 @@ fn trace_loop(start: Vertex, links: &[[Vertex; 2]], visited: &mut [bool]) -> Vec
     vertices
 }
 
-/// Puts the longest loop first and keeps the order of equally long ones.
-fn by_length(points: &[Vector3], loops: Vec<Vec<Vertex>>) -> Vec<Vec<Vertex>> {
-    let mut measured: Vec<_> = loops.into_iter().map(|l| (geometry::loop_length(points, &l), l)).collect();
-    measured.sort_by(|a, b| b.0.total_cmp(&a.0));
-    measured.into_iter().map(|(_, vertices)| vertices).collect()
+/// Puts the longest loop first and keeps the order of those that are equally long but for rounding.
+fn by_length(points: &[Vector3], mut loops: Vec<Vec<Vertex>>) -> Vec<Vec<Vertex>> {
+    let lengths: Vec<f64> = loops.iter().map(|vertices| geometry::loop_length(points, vertices)).collect();
+    largest_first(&lengths).into_iter().map(|k| std::mem::take(&mut loops[k])).collect()
 }

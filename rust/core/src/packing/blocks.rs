@@ -15,6 +15,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::angles::{EQUAL, least_box_angle, turned_box, turned_size};
 use super::outline::{Outline, Point};
 use super::rotation::Rotation;
+use crate::mesh::ties::largest_first;
 
 /// From this number of islands on, small ones are gathered.
 pub(super) const MANY: usize = 400;
@@ -63,16 +64,19 @@ struct Level {
 /// All islands in pieces, those in a block a gap apart.
 pub(super) fn pieces(outlines: &[Outline], rotation: Rotation, gap: f64) -> Vec<Piece> {
     // 1. The large islands
-    let least = LARGE * outlines.iter().map(|outline| outline.area).sum::<f64>();
-    let mut order: Vec<usize> = (0..outlines.len()).collect();
-    order.sort_by(|&one, &other| outlines[other].area.total_cmp(&outlines[one].area));
+    let least = LARGE * outlines.iter().map(|outline| outline.area).sum::<f64>() * (1.0 - EQUAL);
+    let areas: Vec<f64> = outlines.iter().map(|outline| outline.area).collect();
+    let order = largest_first(&areas);
     let n_large = order.iter().take(MOST_LARGE).take_while(|&&island| outlines[island].area >= least).count();
     let (large, small) = order.split_at(n_large);
     let mut pieces: Vec<Piece> = large.iter().map(|&island| alone(outlines, island)).collect();
     // 2. The small ones, the highest first
-    let mut levels: Vec<Level> =
+    let mut small = small.to_vec();
+    small.sort_unstable();
+    let levels: Vec<Level> =
         small.iter().map(|&island| level(&outlines[island].hull, island, rotation)).collect();
-    levels.sort_by(|one, other| other.size[1].total_cmp(&one.size[1]).then(one.island.cmp(&other.island)));
+    let heights: Vec<f64> = levels.iter().map(|level| level.size[1]).collect();
+    let levels: Vec<Level> = largest_first(&heights).into_iter().map(|k| levels[k]).collect();
     // 3. Blocks of about one area
     let room = |level: &Level| (level.size[0] + gap) * (level.size[1] + gap);
     let total: f64 = levels.iter().map(room).sum();

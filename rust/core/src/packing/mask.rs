@@ -4,7 +4,7 @@
 use super::outline::Point;
 
 /// What rounding may move a point by, in cells.
-const ROUNDING: f64 = 1e-7;
+pub(super) const ROUNDING: f64 = 1e-7;
 
 /// Rows of cells, each a list of disjoint spans `first..end` from left to right.
 #[derive(Debug, Clone, Default)]

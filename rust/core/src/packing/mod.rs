@@ -34,7 +34,9 @@ use std::f64::consts::FRAC_PI_2;
 use crate::control::{Observer, Watch};
 use crate::error::Error;
 use crate::parallel;
-use angles::{angles_around, direction, flattened, least, square_angle, turned, turned_box, turned_size};
+use angles::{
+    EQUAL, angles_around, direction, flattened, least, square_angle, turned, turned_box, turned_size,
+};
 use blocks::{MANY, Piece};
 pub use margin::Margin;
 pub use outline::Island;
@@ -249,6 +251,8 @@ fn tried_angles(hull: &[Point], share: f64, options: &PackOptions) -> Vec<f64> {
         Rotation::Cardinal => return (0..4).map(|k| f64::from(k) * FRAC_PI_2).collect(),
         Rotation::Free => {}
     }
+    // of a hundred equal islands rounding must not decide which are large
+    let share = share * (1.0 + EQUAL);
     let n = ANGLES.iter().find(|&&(least, _)| share >= least).map_or(1, |&(_, n)| n);
     let mut angles = angles_around(hull, n);
     if share >= LARGE {

@@ -3,7 +3,7 @@
 
 use super::angles::{direction, flattened, turned, turned_box};
 use super::atlas::{Grid, Probes};
-use super::mask::Mask;
+use super::mask::{Mask, ROUNDING};
 use super::outline::{Outline, Point};
 
 /// An island turned by one angle and flattened, its bounding box moved to the origin.
@@ -29,7 +29,7 @@ impl Pose {
     pub fn new(outline: &Outline, angle: f64, aspect: f64, gap: f64, grid: Grid) -> Self {
         let [corner, end] = turned_box(&outline.hull, angle, aspect);
         let size = [end[0] - corner[0], end[1] - corner[1]];
-        let cells = size.map(|length| (length / grid.cell) as usize + 1);
+        let cells = size.map(|length| (length / grid.cell + ROUNDING) as usize + 1);
         let pose = Self { angle, corner, size, cells, ..Self::default() };
         if cells.iter().any(|&n| n > grid.side) {
             return pose;

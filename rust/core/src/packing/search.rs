@@ -2,6 +2,7 @@
 //! The search for the smallest square: islands are placed again and again, in other orders and by other rules, in less
 //! and less room.
 
+use super::angles::EQUAL;
 use super::atlas::Grid;
 use super::margin::{Margin, too_large};
 use super::outline::{Outline, Point};
@@ -9,6 +10,7 @@ use super::placement::{Layout, Plan, Rule, place_all};
 use super::pose::Pose;
 use crate::control::{Observer, Phase, Watch};
 use crate::error::Error;
+use crate::mesh::ties::largest_first;
 use crate::parallel;
 
 pub(super) const MESSAGE: &str = "Packing islands";
@@ -180,7 +182,7 @@ fn refined(
         let poses = all_poses(&task, grid, &watch)?;
         let layout = tightest(&poses, &plan, grid.side, grid, &watch)?;
         let finer = layout.map(|layout| arrangement(&poses, &layout, grid));
-        best = finer.filter(|finer| finer.side < best.side).unwrap_or(best);
+        best = finer.filter(|finer| finer.side < best.side * (1.0 - EQUAL)).unwrap_or(best);
     }
     Ok(best)
 }
@@ -212,8 +214,7 @@ fn plan(task: &Task<'_>, number: usize, numbers: &mut Numbers) -> Plan {
     let mut random = |scale: f64| if is_random { scale * numbers.next() } else { 0.0 };
     let keys: Vec<f64> =
         task.outlines.iter().map(|outline| outline.area * (1.0 + random(SHUFFLE - 1.0))).collect();
-    let mut order: Vec<usize> = (0..keys.len()).collect();
-    order.sort_by(|&one, &other| keys[other].total_cmp(&keys[one]));
+    let order = largest_first(&keys);
     let n_poses = order.first().map_or(0, |&island| task.angles[island].len());
     let has_first_pose = is_random && random(1.0) < FIRST_POSE_SHARE;
     let first_pose = has_first_pose.then(|| random(n_poses as f64) as usize);

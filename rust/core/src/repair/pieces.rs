@@ -7,6 +7,7 @@ use crate::error::{Elements, MeshError};
 use crate::mesh::Face;
 use crate::mesh::geometry::area;
 use crate::mesh::orientation::{Orientation, consistent};
+use crate::mesh::ties::first_largest;
 
 /// The pieces of a mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,8 +45,7 @@ pub(super) fn choose(draft: &mut Draft, pieces: Pieces, keep: Keep) -> Result<(P
     if keep == Keep::All || dropped == 0 {
         return Ok((pieces, 0));
     }
-    let largest = (0..pieces.areas.len()).rev().max_by(|&a, &b| pieces.areas[a].total_cmp(&pieces.areas[b]));
-    let largest = largest.unwrap_or_default();
+    let largest = first_largest(&pieces.areas).unwrap_or_default();
     if keep == Keep::Main && 2.0 * pieces.areas[largest] <= pieces.areas.iter().sum() {
         let given = pieces.first_faces.iter().filter_map(|&face| draft.face_of[face]);
         return Err(

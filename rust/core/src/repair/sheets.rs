@@ -16,6 +16,7 @@ use std::f64::consts::PI;
 use super::draft::Draft;
 use crate::mesh::geometry::area_vector;
 use crate::mesh::orientation::Orientation;
+use crate::mesh::ties::first_smallest;
 use crate::mesh::{Corner, EdgeTable, Face, Vertex, VertexCorners, fans};
 use crate::vector::Vector3;
 
@@ -130,11 +131,11 @@ fn flattest(mut begins: Vec<(f64, Corner)>, mut ends: Vec<(f64, Corner)>) -> Vec
     let bend = |a: f64, b: f64| ((a - b).abs() - PI).abs();
     let mut pairs = Vec::new();
     loop {
-        let all = (0..begins.len()).flat_map(|i| (0..ends.len()).map(move |j| (i, j)));
-        let bend_of = |&(i, j): &(usize, usize)| bend(begins[i].0, ends[j].0);
-        let Some((i, j)) = all.min_by(|one, next| bend_of(one).total_cmp(&bend_of(next))) else {
-            return pairs;
-        };
+        let all: Vec<_> = (0..begins.len()).flat_map(|i| (0..ends.len()).map(move |j| (i, j))).collect();
+        // beside 1, so that bends near 0 are equal too
+        let bends = all.iter().map(|&(i, j)| 1.0 + bend(begins[i].0, ends[j].0));
+        let Some(flattest) = first_smallest(bends) else { return pairs };
+        let (i, j) = all[flattest];
         pairs.push([begins.remove(i).1, ends.remove(j).1]);
     }
 }

@@ -16,9 +16,9 @@ use std::collections::BinaryHeap;
 
 use super::cut::{Cut, Segment};
 use super::edge_mesh::EdgeMesh;
-use super::paths::on_grid;
 use crate::control::Watch;
 use crate::error::Error;
+use crate::mesh::ties::on_grid;
 use crate::mesh::{Edge, Vertex};
 use crate::vector::Vector3;
 

@@ -8,6 +8,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::edge_mesh::EdgeMesh;
+use crate::mesh::ties::on_grid;
 use crate::mesh::{Edge, Vertex};
 
 /// The cheapest paths from some vertices to all others.
@@ -62,13 +63,6 @@ impl Paths {
         edges.reverse();
         edges
     }
-}
-
-/// A cost as a multiple of a small unit: sums are exact then, and mirror images of a path cost the same whatever the
-/// noise.
-pub(super) fn on_grid(cost: f64) -> f64 {
-    const UNIT: f64 = 1.0 / (1 << 24) as f64;
-    (cost / UNIT).round().max(1.0) * UNIT
 }
 
 /// Vertices far from each other: each is the farthest from all before it, the first the farthest from `start`.

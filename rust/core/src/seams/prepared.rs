@@ -12,7 +12,7 @@ use super::lift::{Lift, Mirrors, image};
 use super::merge::merged;
 use super::openness::openness;
 use super::options::{SeamMethod, Symmetry};
-use super::paths::{Paths, far_points_within_reach, on_grid};
+use super::paths::{Paths, far_points_within_reach};
 use super::plate::Plate;
 use super::progress::{MESSAGE, report};
 use super::proxy::{Proxy, coarser, nearest_vertices, proxy};
@@ -20,6 +20,7 @@ use super::search::{Figures, Problem, Search, Solution, with_partners};
 use super::symmetry::{MirrorPlane, mirror_vertices};
 use crate::control::{Observer, Phase, Watch};
 use crate::error::Error;
+use crate::mesh::ties::on_grid;
 use crate::mesh::{Edge, Vertex};
 use crate::vector::Vector3;
 

@@ -21,3 +21,4 @@ mod seams;
 mod spatial_energy;
 mod sphere;
 mod sphere_runs;
+mod symmetry;

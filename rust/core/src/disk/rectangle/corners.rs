@@ -170,16 +170,10 @@ impl<'a> Outline<'a> {
                 break;
             }
         }
-        // the sharpest come first; among equals the numbering must not decide
-        candidates.sort_by(|&a, &b| match turns[b] - turns[a] {
-            difference if difference.abs() > MARGIN => difference.total_cmp(&0.0),
-            _ => self.height(a).total_cmp(&self.height(b)),
-        });
+        candidates = self.sharpest_first(candidates, &turns);
         candidates.truncate(MOST_CANDIDATES);
         for &[first, more] in &self.cut_off {
-            let places = (first..=first + more).map(|k| k % n);
-            let sharpest = places.max_by(|&a, &b| turns[a].total_cmp(&turns[b])).expect("not empty");
-            candidates.push(sharpest);
+            candidates.push(self.best((first..=first + more).map(|k| k % n), |k| -turns[k]));
         }
         candidates.sort_unstable();
         candidates.dedup();
@@ -240,36 +234,47 @@ impl<'a> Outline<'a> {
     fn halved(&self, candidates: &[usize], turns: &[f64]) -> Corners {
         let n = self.vertices.len();
         // 1. One corner for each part that needs one, then the sharpest
-        let mut order = candidates.to_vec();
         let is_needed = |k: usize| self.cut_off.iter().any(|&[first, more]| (k + n - first) % n <= more);
-        order.sort_by(|&a, &b| {
-            is_needed(b).cmp(&is_needed(a)).then(turns[b].total_cmp(&turns[a])).then(a.cmp(&b))
-        });
-        let mut corners: Vec<usize> = order.into_iter().take(4).collect();
+        let mut corners = self.sharpest_first(candidates.to_vec(), turns);
+        corners.sort_by_key(|&k| !is_needed(k));
+        corners.truncate(4);
         if corners.is_empty() {
-            corners.push(self.lowest());
+            corners.push(self.lowest(0..n));
         }
         // 2. The middles of the longest sides
         while corners.len() < 4 {
-            corners.sort_unstable();
-            let sides = (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]]);
-            let with_room = sides.filter(|&[from, to]| (from + 1) % n != to);
-            let length = |&[from, to]: &[usize; 2]| self.length(from, to);
-            let [from, to] =
-                with_room.max_by(|a, b| length(a).total_cmp(&length(b))).expect("at least four vertices");
-            let half = 0.5 * length(&[from, to]);
+            let end = |from: usize| corners.iter().copied().min_by_key(|&to| (to + n - from - 1) % n);
+            let end = |from: usize| end(from).expect("there is a corner");
+            let with_room = corners.iter().copied().filter(|&from| (from + 1) % n != end(from));
+            let from = self.best(with_room, |from| -self.length(from, end(from)));
+            let (to, half) = (end(from), 0.5 * self.length(from, end(from)));
             let inside = (1..n).map(|step| (from + step) % n).take_while(|&k| k != to);
-            let off = |k: usize| (self.length(from, k) - half).abs();
-            corners.push(inside.min_by(|&a, &b| off(a).total_cmp(&off(b))).expect("there is room"));
+            let middle = self.best(inside, |k| (self.length(from, k) - half).abs());
+            corners.push(middle);
         }
         corners.sort_unstable();
         corners.try_into().expect("four")
     }
 
+    /// The places, the sharpest turns first; of equals the lowest.
+    fn sharpest_first(&self, mut places: Vec<usize>, turns: &[f64]) -> Vec<usize> {
+        places.sort_by(|&a, &b| turns[b].total_cmp(&turns[a]));
+        places.chunk_by_mut(|&a, &b| (turns[a] - turns[b]).abs() <= MARGIN).for_each(|equals| {
+            equals.sort_by(|&a, &b| self.height(a).total_cmp(&self.height(b)));
+        });
+        places
+    }
+
+    /// The place of the least value; of equals the lowest.
+    fn best(&self, places: impl Iterator<Item = usize> + Clone, value: impl Fn(usize) -> f64) -> usize {
+        let least = places.clone().map(&value).fold(f64::INFINITY, f64::min);
+        self.lowest(places.filter(|&k| value(k) <= least + MARGIN))
+    }
+
     /// The lowest place in a direction along no axis.
-    fn lowest(&self) -> usize {
-        let least = (0..self.vertices.len()).map(|k| self.height(k)).fold(f64::INFINITY, f64::min);
-        (0..self.vertices.len()).find(|&k| self.height(k) <= least + MARGIN).expect("there is a lowest")
+    fn lowest(&self, mut places: impl Iterator<Item = usize> + Clone) -> usize {
+        let least = places.clone().map(|k| self.height(k)).fold(f64::INFINITY, f64::min);
+        places.find(|&k| self.height(k) <= least + MARGIN).expect("there are places")
     }
 
     fn height(&self, place: usize) -> f64 {

@@ -3,13 +3,15 @@
 //! shapes and degrees that it leaves.
 //!
 //! A queue holds all vertices by their last known costs. Most costs only rise, so the cost of a vertex is
-//! computed again when it comes to the front; the vertex goes back if the cost has risen.
+//! computed again when it comes to the front; the vertex goes back if the cost has risen. Of costs that are equal but for
+//! noise, as on symmetric surfaces, the lowest vertex comes first.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::Decimation;
 use crate::control::Observer;
+use crate::mesh::ties::{DistinctKeys, are_equal};
 use crate::mesh::{Corner, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
@@ -117,13 +119,15 @@ impl Decimation<'_> {
         observer: &mut dyn Observer,
     ) -> Option<()> {
         let surplus = self.degrees.len().saturating_sub(n_left.max(4));
-        let mut queue = self.candidates(&stays, observer)?;
+        let mut distinct = DistinctKeys::default();
+        let mut queue = self.candidates(&stays, &mut distinct, observer)?;
         let mut waiting = vec![false; self.degrees.len()];
         let mut ring = Ring::default();
         while self.collapses.len() < surplus {
             let Some(Reverse(Candidate { cost, vertex })) = queue.pop() else { break };
             // 1. Compute the cost again; the vertex goes back if it has risen, while a fallen cost is good enough
             let (now, corner) = self.best_collapse(vertex, &mut ring);
+            let now = distinct.one_of_equal_values(now);
             let Some(corner) = corner else {
                 waiting[vertex] = true;
                 continue;
@@ -151,13 +155,17 @@ impl Decimation<'_> {
     fn candidates(
         &self,
         stays: &impl Fn(Vertex) -> bool,
+        distinct: &mut DistinctKeys,
         observer: &mut dyn Observer,
     ) -> Option<BinaryHeap<Reverse<Candidate>>> {
         let n = self.mesh.n_vertices();
         let mut candidates = Vec::with_capacity(n);
         for first in (0..n).step_by(ROUND) {
             let costs = parallel::map(ROUND.min(n - first), |k| self.first_cost(Vertex::new(first + k)));
-            let with_cost = |(k, cost)| Reverse(Candidate { cost, vertex: Vertex::new(first + k) });
+            let with_cost = |(k, cost)| {
+                let cost = distinct.one_of_equal_values(cost);
+                Reverse(Candidate { cost, vertex: Vertex::new(first + k) })
+            };
             let moves = |(k, _): &(usize, f64)| !stays(Vertex::new(first + k));
             candidates.extend(costs.into_iter().enumerate().filter(moves).map(with_cost));
             if !observer.progress(0.0, "Coarsening") {
@@ -192,8 +200,14 @@ impl Decimation<'_> {
                 (shape, neighbor, ring.corners[k])
             })
             .collect();
+        // of ratings that are equal but for noise that of the lowest vertex
+        let is_better = |a: &(f64, Vertex, Corner), b: &(f64, Vertex, Corner)| {
+            if are_equal(a.0, b.0) { a.1 < b.1 } else { a.0 < b.0 }
+        };
         // the link condition is the most expensive, so test the best neighbor first, then the second best
-        while let Some(&best) = rated.iter().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))) {
+        while let Some(&best) =
+            rated.iter().reduce(|best, next| if is_better(next, best) { next } else { best })
+        {
             if self.keeps_the_sphere(ring, best.1) {
                 let cost = self.tie_breakers[vertex] * ring.weight() * best.0.sqrt();
                 return (cost, Some(best.2));

@@ -245,12 +245,17 @@ fn paired(curve: usize, (source, target): (Path, Path)) -> Result<CurvePair, Err
     Ok(CurvePair { source: source.vertices, target: target.vertices, closed, on_boundary: false, gap })
 }
 
+/// Coordinates of a surface of unit size that differ by less are equal but for noise.
+const SAME_COORDINATE: f64 = 1e-9;
+
 /// Starts a closed curve at the vertex with the least coordinates, toward the lesser of its neighbors, so that
 /// the start and the direction given do not matter.
 fn start_canonically(closed: &mut [Vertex], mesh: &TriangleMesh) {
-    let point = |vertex: Vertex| mesh.points()[vertex];
-    let is_less =
-        |a: Vertex, b: Vertex| point(a).partial_cmp(&point(b)).is_some_and(std::cmp::Ordering::is_lt);
+    let is_less = |a: Vertex, b: Vertex| {
+        let [a, b] = [a, b].map(|vertex| mesh.points()[vertex]);
+        let axis = (0..3).find(|&axis| (a[axis] - b[axis]).abs() > SAME_COORDINATE);
+        axis.is_some_and(|axis| a[axis] < b[axis])
+    };
     let first = (1..closed.len()).fold(0, |best, k| if is_less(closed[k], closed[best]) { k } else { best });
     closed.rotate_left(first);
     if is_less(closed[closed.len() - 1], closed[1]) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Parameters along curves, and points at parameters.
 
+use crate::mesh::ties::first_smallest;
 use crate::vector::Vector3;
 
 /// Part of the parameters that is divided evenly if some edges are too short for parameters to increase.
@@ -34,8 +35,7 @@ pub(crate) fn on_sphere(places: &[Vector3], parameters: &[f64], s: f64) -> Vecto
 
 /// The index from `first` to `last` of the parameter nearest to `s`.
 pub(super) fn nearest(parameters: &[f64], [first, last]: [usize; 2], s: f64) -> usize {
-    let gap = |k: usize| (parameters[k] - s).abs();
-    (first..=last).min_by(|&a, &b| gap(a).total_cmp(&gap(b))).unwrap_or(first)
+    first + first_smallest((first..=last).map(|k| (parameters[k] - s).abs())).unwrap_or(0)
 }
 
 /// The sum of the chords of a polyline on the unit sphere.

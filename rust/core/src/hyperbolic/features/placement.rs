@@ -16,6 +16,7 @@ use crate::alignment::rotation::{best_rotation, centroid, rotate};
 use crate::control::Watch;
 use crate::disk::closed;
 use crate::error::{Elements, Error, MapError};
+use crate::mesh::ties::{first_largest, smallest_first};
 use crate::mesh::{TriangleMesh, Vertex};
 use crate::parallel;
 use crate::sphere::rough_conformal;
@@ -193,9 +194,7 @@ impl Samples {
             turned.iter().zip(target).map(|(&x, y)| x.dot(y)).sum()
         };
         let fits = parallel::map(shifts.len(), fit);
-        // from the back, as max_by takes the last of equals
-        let best = (0..shifts.len()).rev().max_by(|&a, &b| fits[a].total_cmp(&fits[b])).unwrap_or(0);
-        self.shift = shifts[best];
+        self.shift = shifts[first_largest(&fits).unwrap_or(0)];
         self.target = self.line.samples(true, self.shift);
     }
 
@@ -278,15 +277,15 @@ fn paired_loops(
     let theirs = divided.target.loops.iter().map(|&(number, region)| (number, region, center(1, number)));
     let theirs: Vec<_> = theirs.collect();
     // 1. All pairs, the nearest first
-    let mut near = Vec::new();
+    let mut all = Vec::new();
     for (i, &(_, region, x)) in ours.iter().enumerate() {
         let same = theirs.iter().enumerate().filter(|(_, their)| their.1 == region);
-        near.extend(same.map(|(j, their)| (x.distance(their.2), i, j)));
+        all.extend(same.map(|(j, their)| (x.distance(their.2), i, j)));
     }
-    near.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let distances: Vec<f64> = all.iter().map(|(distance, ..)| *distance).collect();
     // 2. Each loop once
     let (mut partner, mut is_taken) = (vec![None; ours.len()], vec![false; theirs.len()]);
-    for (_, i, j) in near {
+    for (_, i, j) in smallest_first(&distances).into_iter().map(|k| all[k]) {
         if partner[i].is_none() && !is_taken[j] {
             (partner[i], is_taken[j]) = (Some(j), true);
         }

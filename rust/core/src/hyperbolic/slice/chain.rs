@@ -12,6 +12,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::hyperbolic::features::piece::{Feature, Piece};
 use crate::mesh::Vertex;
+use crate::mesh::ties::first_smallest;
 use crate::vector::Vector3;
 
 /// A link from the end of a feature to the start of the next.
@@ -34,8 +35,9 @@ pub(super) fn order(source: &Piece, target: &Piece) -> Vec<(usize, bool)> {
         .map(|(s, t)| [tips(source, s), tips(target, t)])
         .collect();
     let starts = (0..2 * tips.len()).map(|start| (start / 2, start % 2 == 1));
-    let chains = starts.map(|start| nearest_neighbors(&tips, start));
-    chains.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(Vec::new(), |(chain, _)| chain)
+    let mut chains: Vec<_> = starts.map(|start| nearest_neighbors(&tips, start)).collect();
+    let shortest = first_smallest(chains.iter().map(|(_, length)| *length));
+    shortest.map_or(Vec::new(), |shortest| chains.swap_remove(shortest).0)
 }
 
 /// The features of a piece in the order and the directions of a chain.
@@ -67,12 +69,12 @@ fn nearest_neighbors(tips: &[Tips], start: (usize, bool)) -> (Vec<(usize, bool)>
     let mut last = start;
     while chain.len() < tips.len() {
         let remaining = (0..tips.len()).filter(|&k| chain.iter().all(|&(used, _)| used != k));
-        let directed = remaining.flat_map(|k| [(k, false), (k, true)]);
-        let reached = directed.map(|next| (gap(tips, last, next), next));
-        let Some((nearest, next)) = reached.min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
-        length += nearest;
-        chain.push(next);
-        last = next;
+        let directed: Vec<_> = remaining.flat_map(|k| [(k, false), (k, true)]).collect();
+        let gap = |&next: &(usize, bool)| gap(tips, last, next);
+        let Some(nearest) = first_smallest(directed.iter().map(gap)) else { break };
+        length += gap(&directed[nearest]);
+        last = directed[nearest];
+        chain.push(last);
     }
     (chain, length)
 }
@@ -122,6 +124,23 @@ mod tests {
         let link = |curve, from, to| Link { curve: Some(curve), from: Vertex(from), to: Vertex(to) };
         let expected = [link(0, 1, 4), link(2, 5, 3)];
         assert_eq!(links, expected);
+    }
+
+    #[test]
+    fn of_chains_of_one_length_noise_chooses_none() {
+        let third = std::f64::consts::TAU / 3.0;
+        let around = |noise: &dyn Fn(u32) -> f64| {
+            let tips = [0, 1, 2].map(|k| [0.0, 0.5].map(|x| third * f64::from(k) + x));
+            piece(
+                &[0, 1, 2]
+                    .map(|k| [tips[k as usize][0] + noise(2 * k), tips[k as usize][1] + noise(2 * k + 1)]),
+            )
+        };
+        let expected = [(0, false), (1, false), (2, false)];
+        for seed in 0..20 {
+            let piece = around(&|k| 1e-13 * (f64::from(k + 6 * seed) * 7.3).sin());
+            assert_eq!(order(&piece, &piece), expected, "{seed}");
+        }
     }
 
     #[test]

@@ -13,6 +13,7 @@ use crate::alignment::rotation::{best_rotation, rotate, rotation_of};
 use crate::control::Watch;
 use crate::hyperbolic::features::parameters::{length, on_sphere, unit};
 use crate::hyperbolic::features::piece::{Bank, Piece};
+use crate::mesh::ties::first_largest;
 use crate::parallel;
 use crate::sparse::solve_positive_definite;
 use crate::vector::Vector3;
@@ -189,8 +190,7 @@ fn axis_angle(rotation: [Vector3; 3]) -> (Vector3, f64) {
     }
     // half a turn: R + I = 2 axis axisᵀ, whose longest column gives the axis
     let columns = [[a + 1.0, ba, ca], [ab, b + 1.0, cb], [ac, bc, c + 1.0]].map(Vector3);
-    let longest = columns.into_iter().max_by(|x, y| x.norm().total_cmp(&y.norm()));
-    (unit(longest.unwrap_or(Vector3::unit(2))), angle)
+    (unit(columns[first_largest(&columns.map(Vector3::norm)).unwrap_or(0)]), angle)
 }
 
 /// Points of equal parameter on all features of both pieces; no point of a loop is repeated.

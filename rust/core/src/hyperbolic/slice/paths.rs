@@ -9,6 +9,7 @@ use std::collections::BinaryHeap;
 
 use super::cutting::Cutting;
 use crate::mesh::Vertex;
+use crate::mesh::ties::on_grid;
 
 /// Vertices in the order of their distances; the bits of nonnegative floats are ordered like the floats.
 type Queue = BinaryHeap<Reverse<(u64, Vertex)>>;
@@ -61,7 +62,8 @@ pub(super) fn cheapest_path(
             if surface.is_cut(neighbor) && neighbor != to {
                 continue;
             }
-            let total = spent + cost(vertex, neighbor);
+            // of symmetric paths rounding must not choose
+            let total = spent + on_grid(cost(vertex, neighbor));
             if total < best[neighbor].0 {
                 best[neighbor] = (total, vertex);
                 queue.push(Reverse((total.to_bits(), neighbor)));

@@ -17,6 +17,7 @@ use crate::hyperbolic::harmonic::atlas::Atlas;
 use crate::hyperbolic::moebius::{Complex, Moebius, distance, from_hyperboloid, to_hyperboloid};
 use crate::hyperbolic::slice::BoundaryCorners;
 use crate::hyperbolic::slice::sliced::{Side, Sliced};
+use crate::mesh::ties::{first_smallest, rounded};
 use crate::mesh::{Corner, Face};
 use crate::parallel;
 use crate::vector::Vector3;
@@ -70,7 +71,7 @@ impl<'a> Development<'a> {
         let middle = from_hyperboloid(middle);
         let far =
             parallel::map(first.frames.len(), |face| distance(middle, first.frames[face].apply(ORIGIN)));
-        let nearest = (0..far.len()).min_by(|&a, &b| far[a].total_cmp(&far[b])).unwrap_or(0);
+        let nearest = first_smallest(far.into_iter()).unwrap_or(0);
         Self::around(Face::new(nearest), sliced, atlas)
     }
 
@@ -139,8 +140,7 @@ pub fn cover(generators: &[Moebius], count: usize) -> Vec<CoverCopy> {
         for &letter in &letters {
             if copies[newest].word.last() != Some(&-letter) {
                 let next = copies[newest].motion * motion(letter);
-                // the bits of nonnegative floats are ordered like the floats
-                pending.push(Reverse((next.b.norm().to_bits(), newest, letter)));
+                pending.push(Reverse((rounded(next.b.norm().ln_1p()).to_bits(), newest, letter)));
             }
         }
         // 2. The nearest of all neighbors

@@ -33,6 +33,7 @@ use crate::arrays::{from_rows, from_vectors, vectors};
 use crate::control::{Observer, Watch};
 use crate::error::{CurveError, Error, NumericsError};
 use crate::location::{Location, points_on};
+use crate::mesh::ties::first_smallest;
 use crate::mesh::{Corner, Face, Surface, TriangleMesh, Vertex, index_array};
 use fuchsian::{CoverCopy, Development, cover};
 use pants::{Pants, pants};
@@ -233,8 +234,8 @@ fn pants_curves(
             let [from, to] = [from, to].map(|end| domain.frames[face].inverse().apply(end));
             (from + to).norm()
         };
-        let faces = sliced.sides[2 * k + 3].opposite_corners(&corners).map(Corner::face);
-        let face = faces.min_by(|&a, &b| far(a).total_cmp(&far(b)))?;
+        let faces: Vec<Face> = sliced.sides[2 * k + 3].opposite_corners(&corners).map(Corner::face).collect();
+        let face = faces[first_smallest(faces.iter().map(|&face| far(face)))?];
         let generator = Development::around(face, sliced, atlas).generators()[k + 1];
         let line = generator.fixed_points();
         closed_geodesic(atlas, &sliced.surface, face, line, generator.translation_length())

@@ -14,7 +14,7 @@
 //! While there are many vertices, sweeps in the order of the vertices collapse those whose costs are among the lowest:
 //! the arrays then pass through the cache in order. At the end a queue has the cheapest vertex next. Most costs only rise,
 //! so the cost of a vertex whose star has changed is computed again when its last one is low enough. Costs that differ by
-//! rounding are equal, and the vertex of the lower index goes first.
+//! rounding or noise are equal, and the vertex of the lower index goes first.
 //!
 //! Cost: O(n log n), with the costs of about three vertices computed per collapse.
 
@@ -25,6 +25,7 @@ use super::connectivity::Connectivity;
 use super::quadric::Quadric;
 use crate::control::Watch;
 use crate::mesh::geometry::{area_vector, triangle};
+use crate::mesh::ties::DistinctKeys;
 use crate::mesh::{Corner, Face, TriangleMesh, Vertex};
 use crate::vector::Vector3;
 
@@ -54,6 +55,10 @@ const NEVER: u64 = u64::MAX;
 
 /// Bits of the mantissa of a cost that are lost to rounding.
 const ROUNDED_BITS: u32 = 20;
+
+/// Keys that differ by no more are equal, a millionth of the cost: where a surface is nearly flat, costs are small
+/// differences, and noise of the input changes them more than rounding.
+const EQUAL_KEYS: u64 = 1 << 12;
 
 /// Steps between two checks for cancellation.
 const BETWEEN_CHECKS: usize = 1024;
@@ -113,6 +118,8 @@ struct Decimation<'a> {
     plans: Vec<Plan>,
     /// The last known costs, rounded; 0 if there is none yet.
     keys: Vec<u64>,
+    /// The keys in the queue; `None` during sweeps.
+    distinct_keys: Option<DistinctKeys>,
     /// What the vertices left count.
     left: usize,
     /// Vertices that were stuck until their star changed.
@@ -133,6 +140,7 @@ impl<'a> Decimation<'a> {
             errors: vec![0.0; mesh.n_vertices()],
             plans: vec![Plan::Outdated; mesh.n_vertices()],
             keys: vec![0; mesh.n_vertices()],
+            distinct_keys: None,
             left: 2 * mesh.n_vertices() - n_on_plane,
             freed: Vec::new(),
             ring: Ring::default(),
@@ -143,7 +151,8 @@ impl<'a> Decimation<'a> {
     fn lowest_keys(&self) -> Option<u64> {
         let mut keys: Vec<u64> = self.keys.iter().copied().filter(|&key| key != NEVER).collect();
         let rank = (SWEPT * keys.len() as f64) as usize;
-        (!keys.is_empty()).then(|| *keys.select_nth_unstable(rank).1)
+        // those equal to the last of them are low too
+        (!keys.is_empty()).then(|| keys.select_nth_unstable(rank).1.saturating_add(EQUAL_KEYS))
     }
 
     /// Collapses vertices whose cost is at most `limit`, in their order, until those left count `target`; `None` if
@@ -165,8 +174,15 @@ impl<'a> Decimation<'a> {
     /// Collapses the cheapest vertex again and again until those left count `target`, or until none can collapse; `None`
     /// if cancelled.
     fn empty_queue(&mut self, target: usize, watch: &Watch<'_>) -> Option<()> {
-        let waiting = Vertex::all(self.points.len()).map(|vertex| (self.keys[vertex], vertex));
-        let mut queue: BinaryHeap<_> = waiting.filter(|(key, _)| *key != NEVER).map(Reverse).collect();
+        self.distinct_keys = Some(DistinctKeys::default());
+        let mut queue = BinaryHeap::new();
+        for vertex in Vertex::all(self.points.len()) {
+            let key = self.keys[vertex];
+            if key != NEVER {
+                self.keys[vertex] = self.one_of_equals(key);
+                queue.push(Reverse((self.keys[vertex], vertex)));
+            }
+        }
         let mut steps = 0;
         while self.left > target
             && let Some(Reverse((_, vertex))) = queue.pop()
@@ -213,11 +229,16 @@ impl<'a> Decimation<'a> {
             cheapest = self.cheapest(vertex);
         }
         let (key, plan) = match cheapest {
-            Some((key, k)) => (key, Plan::Collapse(self.ring.corners[k])),
+            Some((key, k)) => (self.one_of_equals(key), Plan::Collapse(self.ring.corners[k])),
             None => (NEVER, Plan::Stuck),
         };
         (self.keys[vertex], self.plans[vertex]) = (key, plan);
         key
+    }
+
+    /// The key that stands for those equal to one, in the queue: the first of them.
+    fn one_of_equals(&mut self, key: u64) -> u64 {
+        self.distinct_keys.as_mut().map_or(key, |distinct| distinct.one_of_equals(key, EQUAL_KEYS))
     }
 
     /// The neighbor in the ring onto which the collapse costs least, with its key: the lowest of equals.
@@ -230,7 +251,10 @@ impl<'a> Decimation<'a> {
             }
             let error = (quadric.at(self.ring.points[k]) + self.errors[onto]).max(0.0);
             let is_worse = |cost: f64| {
-                best.is_some_and(|(least, first)| (least, self.ring.vertices[first]) < (rounded(cost), onto))
+                best.is_some_and(|(least, first)| match rounded(cost) {
+                    key if key.abs_diff(least) <= EQUAL_KEYS => self.ring.vertices[first] < onto,
+                    key => key > least,
+                })
             };
             if is_worse(error / GOOD_QUALITY) {
                 continue;
@@ -424,7 +448,8 @@ mod tests {
     use crate::control::Silent;
     use crate::seams::proxy::refine::refine;
     use crate::seams::sample_surfaces::{
-        body, greatest_distance, perforated_cylinder, plate_with_three_holes, topology, torus, uneven_body,
+        body, cube, greatest_distance, perforated_cylinder, plate_with_three_holes, sphere, topology, torus,
+        uneven_body,
     };
     use crate::vector::coordinates;
 
@@ -504,6 +529,20 @@ mod tests {
         let mirrored = mesh.points().iter().map(|&Vector3([x, y, z])| [-x, y, z]).collect();
         let turned: Vec<_> = mesh.faces().iter().map(|&[a, b, c]| [a, c, b]).collect();
         assert_eq!(again(mirrored, &turned), left);
+    }
+
+    #[test]
+    fn of_symmetric_vertices_noise_chooses_none() {
+        for mesh in [sphere(5), (0..3).fold(cube(4), |mesh, _| refine(&mesh).unwrap().mesh)] {
+            let left = decimated(&mesh, 300).vertices;
+            for seed in 1..4 {
+                let noise =
+                    |k: usize| Vector3::from_fn(|axis| 1e-12 * (7.3 * (k * seed) as f64 + axis as f64).sin());
+                let noisy = mesh.points().iter().enumerate().map(|(k, &point)| point + noise(k));
+                let noisy = TriangleMesh::new(&coordinates(noisy), mesh.faces()).unwrap();
+                assert_eq!(decimated(&noisy, 300).vertices, left, "{seed}");
+            }
+        }
     }
 
     #[test]

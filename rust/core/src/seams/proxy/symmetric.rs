@@ -16,6 +16,9 @@ use crate::vector::Vector3;
 /// Vertices nearer to the plane than this part of their shortest edge move onto it.
 const SNAP: f64 = 0.2;
 
+/// Parts of an edge, and lengths of diagonals, that differ by less are equal but for noise.
+const EQUAL: f64 = 1e-9;
+
 /// A symmetric mesh of which one half was sliced off another mesh.
 #[derive(Debug)]
 pub(super) struct SymmetricMesh {
@@ -118,7 +121,7 @@ impl Half {
             if heights[a] * heights[b] < 0.0 {
                 let t = heights[a] / (heights[a] - heights[b]);
                 let point = mesh.points()[a] * (1.0 - t) + mesh.points()[b] * t;
-                let crossing = self.push(plane.projection(point), true, if t < 0.5 { a } else { b });
+                let crossing = self.push(plane.projection(point), true, if t < 0.5 - EQUAL { a } else { b });
                 corners.iter().for_each(|corner| numbers[corner.corner()] = Some(crossing));
             }
         }
@@ -138,7 +141,9 @@ impl Half {
         let length = |a: Vertex, b: Vertex| self.points[a].distance(self.points[b]);
         match *polygon {
             [a, b, c] => self.faces.push([a, b, c]),
-            [a, b, c, d] if length(a, c) < length(b, d) => self.faces.extend([[a, b, c], [a, c, d]]),
+            [a, b, c, d] if length(a, c) < (1.0 - EQUAL) * length(b, d) => {
+                self.faces.extend([[a, b, c], [a, c, d]])
+            }
             [a, b, c, d] => self.faces.extend([[a, b, d], [b, c, d]]),
             _ => {}
         }

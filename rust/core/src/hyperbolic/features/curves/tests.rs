@@ -138,3 +138,23 @@ fn surfaces_must_be_one_piece_without_handles() {
     let error = check([&whole(), &two], &[vec![0, 1]], &[vec![0, 1]]).unwrap_err();
     assert!(error.to_string().starts_with("the target: the mesh is 2 separate pieces"), "{error}");
 }
+
+#[test]
+fn noise_does_not_choose_where_a_closed_curve_starts() {
+    // a ring of two vertices of the least x each
+    let ring: Vec<[f64; 3]> = (0..16)
+        .map(|k| std::f64::consts::TAU * (f64::from(k) + 0.5) / 16.0)
+        .map(|angle| [angle.cos(), angle.sin(), 0.0])
+        .collect();
+    let n = ring.len() as u32;
+    let faces: Vec<[u32; 3]> = (0..n).flat_map(|k| [[k, (k + 1) % n, n], [(k + 1) % n, k, n + 1]]).collect();
+    for seed in 0..20 {
+        let noise = |k: usize| 1e-12 * (7.3 * (k + seed) as f64).sin();
+        let poles = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
+        let moved = ring.iter().enumerate().map(|(k, &[x, y, z])| [x + noise(k), y, z]).chain(poles);
+        let mesh = TriangleMesh::new(&moved.collect::<Vec<_>>(), &faces).unwrap();
+        let mut curve: Vec<Vertex> = (0..n).map(Vertex).collect();
+        start_canonically(&mut curve, &mesh);
+        assert_eq!(curve[..2], [8, 7].map(Vertex), "{seed}");
+    }
+}

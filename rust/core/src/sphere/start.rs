@@ -45,6 +45,9 @@ const ROUND: f64 = 0.1;
 /// Upper bound of the cotangents of a rough map; its inverse is the lower bound.
 const LARGEST_COTANGENT: f64 = 100.0;
 
+/// Largest relative change of the roundness of a face by its distance from given vertices.
+const NEARNESS: f64 = 1e-6;
+
 const MESSAGE: &str = "Start map";
 
 /// A map without folds from which a descent can start: the conformal one, mended where a few faces fold, or the
@@ -113,20 +116,21 @@ fn has_collapsed(mesh: &TriangleMesh, targets: &[f64], map: &[Vector3]) -> bool 
 /// # Errors
 /// [`NumericsError::FactorizationFailed`] where slivers make the cotangents too large.
 fn conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<SpatialMap, Error> {
-    conformal_within(f64::INFINITY, mesh, weights, watch)
+    conformal_within(f64::INFINITY, mesh, weights, &[], watch)
 }
 
 /// A nearly conformal map, centered, without folds except by rounding: cotangents are clamped to positive, moderate
-/// values.
+/// values. Given vertices tell the sides of a symmetric surface apart, which begin the map otherwise.
 ///
 /// # Errors
 /// As [`conformal`], which is not to be expected, and [`Error::CancelledEarly`].
 pub(crate) fn rough_conformal(
     mesh: &TriangleMesh,
     weights: &[f64],
+    given: &[Vertex],
     watch: &Watch<'_>,
 ) -> Result<SpatialMap, Error> {
-    conformal_within(LARGEST_COTANGENT, mesh, weights, watch)
+    conformal_within(LARGEST_COTANGENT, mesh, weights, given, watch)
 }
 
 /// The map for cotangents of at most `largest`, and where that is finite, at least its inverse.
@@ -134,13 +138,14 @@ fn conformal_within(
     largest: f64,
     mesh: &TriangleMesh,
     weights: &[f64],
+    given: &[Vertex],
     watch: &Watch<'_>,
 ) -> Result<SpatialMap, Error> {
     let least = if largest.is_finite() { 1.0 / largest } else { f64::NEG_INFINITY };
     let by_face = corner_cotangents(mesh.points(), mesh.faces());
     let half = |cotangent: &f64| 0.5 * cotangent.clamp(least, largest);
     let by_corner: Vec<f64> = by_face.iter().flatten().map(half).collect();
-    let removed = roundest_face(mesh);
+    let removed = roundest_face(mesh, given);
     let mut plane = harmonic(mesh, removed, &by_corner, watch)?;
     normalize(&mut plane, weights);
     let map = centered(Chart::South.lift_all(&plane), weights);
@@ -161,8 +166,8 @@ fn upright(map: SpatialMap, removed: [Vertex; 3]) -> SpatialMap {
     })
 }
 
-/// The face nearest to an equilateral triangle; the lowest of several.
-fn roundest_face(mesh: &TriangleMesh) -> usize {
+/// The face nearest to an equilateral triangle; of several the one nearest to the middle of given vertices, and the lowest.
+fn roundest_face(mesh: &TriangleMesh, given: &[Vertex]) -> usize {
     let roundness = |face: usize| {
         let [a, b, c] = triangle(mesh.points(), mesh.faces()[face]);
         let squares = [b - a, c - b, a - c].map(|edge| edge.dot(edge));
@@ -170,8 +175,13 @@ fn roundest_face(mesh: &TriangleMesh) -> usize {
     };
     // symmetric surfaces have several roundest faces
     let tie_breakers = tie_breakers(mesh.points());
+    let middle = given.iter().map(|&vertex| mesh.points()[vertex]).sum::<Vector3>()
+        * (1.0 / given.len().max(1) as f64);
+    let nearness =
+        |vertex: Vertex| if given.is_empty() { 0.0 } else { -mesh.points()[vertex].distance(middle) };
     let values = parallel::map(mesh.n_faces(), |face| {
-        let preference: f64 = mesh.faces()[face].iter().map(|&vertex| tie_breakers[vertex]).sum();
+        let of_vertex = |&vertex: &Vertex| tie_breakers[vertex] + NEARNESS * nearness(vertex);
+        let preference: f64 = mesh.faces()[face].iter().map(of_vertex).sum();
         preference * roundness(face)
     });
     first_largest(&values).expect("a mesh has faces")

@@ -92,7 +92,13 @@ pub(crate) fn placed(
         Some([source, target]) => {
             [normalized(meshes[0], "source_sphere", source)?, normalized(meshes[1], "target_sphere", target)?]
         }
-        None => [upright(meshes[0], watch)?, upright(meshes[1], watch)?],
+        None => {
+            let ours: Vec<Vertex> =
+                divided.pairs.iter().flat_map(|pair| pair.source.iter().copied()).collect();
+            let theirs: Vec<Vertex> =
+                divided.pairs.iter().flat_map(|pair| pair.target.iter().copied()).collect();
+            [upright(meshes[0], &ours, watch)?, upright(meshes[1], &theirs, watch)?]
+        }
     };
     // 2. A rotation without starts, then starts and rotation in turns
     let of_pair = |pair: &CurvePair| Samples::new(pair, meshes, [&source, &target]);
@@ -130,11 +136,12 @@ fn normalized(mesh: &TriangleMesh, name: &'static str, given: &[Vector3]) -> Res
     }
 }
 
-/// The nearly conformal map of a surface, holes filled, rotated to its directions in space.
-fn upright(mesh: &TriangleMesh, watch: &Watch<'_>) -> Result<Vec<Vector3>, Error> {
+/// The nearly conformal map of a surface, holes filled, rotated to its directions in space; the vertices of its `curves`
+/// tell the sides of a symmetric surface apart.
+fn upright(mesh: &TriangleMesh, curves: &[Vertex], watch: &Watch<'_>) -> Result<Vec<Vector3>, Error> {
     let whole = closed(mesh)?;
     let weights = whole.vertex_shares(whole.face_areas());
-    let mut map = rough_conformal(&whole, &weights, watch)?;
+    let mut map = rough_conformal(&whole, &weights, curves, watch)?;
     map.truncate(mesh.n_vertices());
     let weights = mesh.vertex_shares(mesh.face_areas());
     let center = centroid(mesh.points(), &weights);

@@ -97,6 +97,22 @@ def test_a_registration_keeps_the_maps_of_both_surfaces(both_results):
     assert np.array_equal(getattr(kept, image), getattr(alone, image))
 
 
+def test_the_maps_of_a_start_turn_with_their_surfaces_and_have_the_figures_of_these():
+    pair = pairs.SPHERE_PAIRS["ball_and_ellipsoid"]
+    turn, _ = np.linalg.qr(np.random.default_rng(5).standard_normal((3, 3)))
+    turn *= np.sign(np.linalg.det(turn))
+    moved = pair._replace(source=meshes.Mesh(pair.source.vertices @ turn, pair.source.faces))
+    here, there = (pairs.register(each, energy="surface") for each in (pair, moved))
+    for kept, mesh in ((here.source_map, pair.source), (here.target_map, pair.target)):
+        measured = authalic.distortion(mesh.vertices, mesh.faces, kept.positions)
+        assert abs(kept.distortion.authalic_energy - measured.authalic_energy) < 1e-12
+        assert kept.distortion.folded.tolist() == measured.folded.tolist() == []
+    assert np.abs(there.source_map.positions - here.source_map.positions @ turn).max() < 1e-6
+    for name in ("registered", "target_registered"):
+        assert np.abs(getattr(there, name) - getattr(here, name)).max() < 1e-6
+    assert np.abs(there.target_map.positions - here.target_map.positions).max() < 1e-6
+
+
 def test_a_registration_is_printed_in_one_line_with_figures(both_results):
     result, pair = both_results
     text = repr(result)

@@ -102,7 +102,7 @@ pub(crate) fn map_disk(
     options: &DiskMapOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<DiskMap, Error> {
-    // who has ended the run is asked no more
+    // an observer that has cancelled the run is not asked again
     let observer: &mut dyn Observer = &mut Rising::new(observer);
     let mut history = History::start();
     let options = &options.by_ref();

@@ -14,7 +14,7 @@ use super::options::{HarmonicSolver, HyperbolicEnergy, HyperbolicOptions};
 use super::slice::isotopy::Isotopy;
 use super::slice::slice_pair;
 use crate::arrays::vectors;
-use crate::control::{History, Observer, Phase, Watch};
+use crate::control::{History, Observer, Phase, Rising, Watch};
 use crate::error::{CurveError, Elements, Error, NumericsError, Side};
 use crate::mesh::{Surface, TriangleMesh};
 use crate::registration::correspondence::meshes;
@@ -42,6 +42,8 @@ pub fn register_hyperbolic(
         let surfaces = [source_surface, target_surface];
         return filling::registered(surfaces, curves, options, observer, register_hyperbolic);
     }
+    // an observer that has cancelled the run is not asked again
+    let observer: &mut dyn Observer = &mut Rising::new(observer);
     // 1. Refuse what cannot be registered before any work
     let (source, target) = meshes(source_surface, target_surface)?;
     options.check()?;

@@ -13,6 +13,7 @@ use super::relaxation::{Goal, even_out, put_on_grid, relax};
 use super::seam::{Layout, Split, split_along_seam};
 use super::singular_points::{SphereMesh, place_singular_points};
 use super::sphere_faces::SphereFaces;
+use super::twist::Side;
 use super::unfolding::unfold;
 use crate::arrays::from_rows;
 use crate::clock::Instant;
@@ -20,12 +21,13 @@ use crate::control::{Observer, Phase, Status, Watch};
 use crate::distortion::folded_in_plane;
 use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::corners::VertexCorners;
+use crate::mesh::ties::nearest_multiple;
 use crate::mesh::{Vertex, index_array};
 use crate::parallel;
 use crate::vector::Vector3;
 
 /// Number of attempts, the first with the best vertices for the singular points, the second with the second best, and
-/// so on.
+/// so on; each is made by twists from either side.
 const RANKS: usize = 4;
 
 /// Number of further attempts on coarse meshes, each with the mesh turned about the pole.
@@ -118,10 +120,12 @@ impl<'a, P: Projection> Run<'a, P> {
     /// before there is a layout without folds.
     pub fn laid_out(&self, observer: &mut dyn Observer) -> Result<Layout, Error> {
         let turns = if self.points.len() > COARSE { 0 } else { TURNS };
-        let attempts = (0..RANKS).map(|rank| (rank, 0.0)).chain((1..=turns).map(|k| (0, TURN * k as f64)));
+        let choices = (0..RANKS).map(|rank| (rank, 0.0)).chain((1..=turns).map(|k| (0, TURN * k as f64)));
+        let attempts =
+            choices.flat_map(|(rank, turn)| [Side::Left, Side::Right].map(|side| (rank, turn, side)));
         let mut fewest: Vec<usize> = (0..self.faces.len()).collect();
-        for (rank, turn) in attempts {
-            match self.attempt(rank, turn, observer)? {
+        for (rank, turn, side) in attempts {
+            match self.attempt(rank, turn, side, observer)? {
                 Attempt::Done(layout) => return Ok(layout),
                 Attempt::NoRoom => {}
                 Attempt::Folded(folded) => {
@@ -161,10 +165,16 @@ impl<'a, P: Projection> Run<'a, P> {
         FOLDED_FACES + (FOLDED_SHARE * self.faces.len() as f64) as usize
     }
 
-    fn attempt(&self, rank: usize, turn: f64, observer: &mut dyn Observer) -> Result<Attempt, Error> {
+    fn attempt(
+        &self,
+        rank: usize,
+        turn: f64,
+        side: Side,
+        observer: &mut dyn Observer,
+    ) -> Result<Attempt, Error> {
         // 1. Move vertices onto the singular points.
         let watch = begun(observer, 0.0, "Placing the poles")?;
-        let Some(placed) = place_singular_points::<P>(&self.turned(turn), rank, &watch)? else {
+        let Some(placed) = place_singular_points::<P>(&self.turned(turn), rank, side, &watch)? else {
             return Ok(Attempt::NoRoom);
         };
         // 2. Lay the faces out in the plane.
@@ -267,11 +277,11 @@ impl<'a, P: Projection> Run<'a, P> {
     }
 }
 
-/// A target on a grid that is fine beside [`LEAST_TOLERANCE`] and coarse beside noise, as
-/// [`put_on_grid`](super::relaxation::put_on_grid) does with vertices.
+/// A target on a grid that is fine beside [`LEAST_TOLERANCE`] and coarse beside noise, as [`put_on_grid`] does with
+/// vertices.
 fn rounded_target(target: f64) -> f64 {
     let cell = TARGET_CELL * target.log2().floor().exp2();
-    (target / cell).round() * cell
+    nearest_multiple(target, cell)
 }
 
 /// Reports the beginning of a step and returns its watch.

@@ -6,8 +6,8 @@
 //! areas are off, so that most of a fine mesh stays as the projection has it. Vertices of faces that would fold move
 //! less far.
 //!
-//! Areas leave open where vertices lie, so that noise in the input grows from step to step. So the vertices are first put
-//! on a grid that is fine beside faces and coarse beside noise ([`put_on_grid`]), as targets are rounded before: nearly the
+//! Areas leave open where vertices lie, and noise in the input grows from step to step. If any area is off, the vertices
+//! are first put on a grid that is fine beside faces and coarse beside noise ([`put_on_grid`]), as targets are rounded before: nearly the
 //! same map is laid out in the same places.
 //!
 //! At first every triangle has its own target. Then only polygons have: their triangles keep the shares that they have
@@ -23,6 +23,7 @@ use super::polygons::Polygons;
 use super::projection::Projection;
 use crate::control::{Observer, Status, Watch};
 use crate::mesh::corners::VertexCorners;
+use crate::mesh::ties::nearest_multiple;
 use crate::mesh::{Face, Vertex};
 use crate::parallel;
 
@@ -39,7 +40,7 @@ const WORK: usize = 4;
 const LEAST_WORK: usize = 400_000;
 
 /// Relative decrease of the energy below which a step counts as without effect.
-const LITTLE: f64 = 2e-3;
+const LITTLE: f64 = 4e-3;
 
 /// Number of rings, around the faces whose areas are off, whose vertices move at first.
 const RINGS: usize = 2;
@@ -98,7 +99,7 @@ pub(super) fn put_on_grid<P: Projection>(chart: &mut Chart<'_, P>, goal: &Goal<'
         let corners = patch.corners.of(Vertex::new(vertex));
         let least = corners.iter().map(|corner| targets[corner.face()]).fold(f64::INFINITY, f64::min);
         let cell = (CELL * least.sqrt()).log2().round().exp2();
-        start[vertex].map(|x| (x / cell).round() * cell - x)
+        start[vertex].map(|x| nearest_multiple(x, cell) - x)
     });
     let images = patch.images(chart);
     let limits = Limits::new(&images, &signed_areas(&images), &targets, goal.rounding);

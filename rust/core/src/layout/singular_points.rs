@@ -11,7 +11,7 @@ use super::chart::signed_areas;
 use super::development::develop;
 use super::polygons::Polygons;
 use super::projection::Projection;
-use super::twist::Motion;
+use super::twist::{Motion, Side};
 use crate::control::Watch;
 use crate::error::Error;
 use crate::mesh::Vertex;
@@ -68,14 +68,15 @@ pub(super) struct Placed {
     pub is_singular: Vec<bool>,
 }
 
-/// Moves a vertex onto each singular point, the best one after skipping `rank`; `None` if there is no room for the
-/// motions.
+/// Moves a vertex onto each singular point, the best one after skipping `rank`, by twists about centers on one `side` where
+/// both are as good; `None` if there is no room for the motions.
 ///
 /// # Errors
 /// [`Error::CancelledEarly`] if the watch cancels.
 pub(super) fn place_singular_points<P: Projection>(
     mesh: &SphereMesh<'_>,
     rank: usize,
+    side: Side,
     watch: &Watch<'_>,
 ) -> Result<Option<Placed>, Error> {
     let mut points = mesh.points.clone();
@@ -87,9 +88,9 @@ pub(super) fn place_singular_points<P: Projection>(
         let placed = &P::SINGULAR[..index];
         let enough = if rank == 0 { FIRST_CANDIDATES } else { CANDIDATES };
         let part = Neighborhood::new(mesh, &points, &is_singular, goal);
-        let ranked = part.ranked::<P>(goal, placed, enough);
+        let ranked = part.ranked::<P>(goal, placed, side, enough);
         let Some(&vertex) = ranked.get(rank.min(ranked.len().saturating_sub(1))) else { return Ok(None) };
-        let Some(motion) = motion(points[vertex], goal, placed) else { return Ok(None) };
+        let Some(motion) = motion(points[vertex], goal, placed, side) else { return Ok(None) };
         parallel::fill_with_old(&mut points, |_, point| motion.image(point));
         points[vertex] = goal;
         is_singular[vertex] = true;
@@ -98,8 +99,12 @@ pub(super) fn place_singular_points<P: Projection>(
 }
 
 /// The motion that takes a vertex to a singular point and keeps the singular points placed before.
-fn motion(start: Vector3, goal: Vector3, placed: &[Vector3]) -> Option<Motion> {
-    if placed.is_empty() { Some(Motion::rotation(start, goal)) } else { Motion::twist(start, goal, placed) }
+fn motion(start: Vector3, goal: Vector3, placed: &[Vector3], side: Side) -> Option<Motion> {
+    if placed.is_empty() {
+        Some(Motion::rotation(start, goal))
+    } else {
+        Motion::twist(start, goal, placed, side)
+    }
 }
 
 /// The part of a mesh around a singular point.
@@ -150,7 +155,13 @@ impl Neighborhood {
 
     /// The vertices that may be moved onto the point, best first. Vertices beyond the `enough` nearest are tried only
     /// while all fold faces.
-    fn ranked<P: Projection>(&self, goal: Vector3, placed: &[Vector3], enough: usize) -> Vec<Vertex> {
+    fn ranked<P: Projection>(
+        &self,
+        goal: Vector3,
+        placed: &[Vector3],
+        side: Side,
+        enough: usize,
+    ) -> Vec<Vertex> {
         let typical_area = median(&self.targets);
         let mut costs: Vec<(f64, Vertex)> = Vec::new();
         let movable = (0..self.vertices.len()).filter(|&index| self.may_move[index]);
@@ -159,7 +170,7 @@ impl Neighborhood {
                 break;
             }
             let detour = self.distances[index].powi(2) / typical_area;
-            let cost = self.cost::<P>(index, goal, placed);
+            let cost = self.cost::<P>(index, goal, placed, side);
             let keeps_its_place = detour < IN_PLACE && cost < FOLD_PENALTY;
             costs.push((if keeps_its_place { 0.0 } else { cost } + DETOUR * detour, self.vertices[index]));
         }
@@ -170,8 +181,8 @@ impl Neighborhood {
     }
 
     /// The squared deviations of the areas, with a penalty per folded face, if a vertex is moved onto the point.
-    fn cost<P: Projection>(&self, index: usize, goal: Vector3, placed: &[Vector3]) -> f64 {
-        let Some(motion) = motion(self.points[index], goal, placed) else { return f64::INFINITY };
+    fn cost<P: Projection>(&self, index: usize, goal: Vector3, placed: &[Vector3], side: Side) -> f64 {
+        let Some(motion) = motion(self.points[index], goal, placed, side) else { return f64::INFINITY };
         let mut points: Vec<Vector3> = self.points.iter().map(|&point| motion.image(point)).collect();
         points[index] = goal;
         let chart = develop::<P>(&points, &self.faces, &self.polygons);

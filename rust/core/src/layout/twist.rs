@@ -5,7 +5,7 @@
 //! farther out, and not at all where points are fixed. In the coordinate log tan (δ/2) of the distance δ from the
 //! center, an angle that falls linearly shears uniformly; here it falls by a smooth step.
 
-use crate::mesh::ties::first_largest;
+use crate::mesh::ties::first_smallest;
 use crate::vector::Vector3;
 
 /// Width of the rigid ring beyond the circle of the moved point, as a fraction of the way to where the sphere rests.
@@ -25,6 +25,13 @@ const LEAST_ROOM: f64 = 0.1;
 
 /// Degrees per radian.
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
+/// A side of the way of a point, seen from outside the sphere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    Left,
+    Right,
+}
 
 /// A motion of the sphere.
 #[derive(Debug, Clone, Copy)]
@@ -62,18 +69,16 @@ impl Motion {
     }
 
     /// The twist of least shear that takes `start` to `goal` and keeps the points `fixed`; `None` if there is no room
-    /// for one.
-    pub fn twist(start: Vector3, goal: Vector3, fixed: &[Vector3]) -> Option<Self> {
+    /// for one. Of two of equal shear, as centers on either side of the way often have, that of the `side` is taken.
+    pub fn twist(start: Vector3, goal: Vector3, fixed: &[Vector3], side: Side) -> Option<Self> {
         if start.distance(goal) < 1e-15 {
             return Some(Self::rotation(goal, goal));
         }
-        let twists: Vec<Twist> = centers(start, goal)
+        let twists: Vec<Twist> = centers(start, goal, side)
             .into_iter()
             .filter_map(|center| Twist::about(center, start, goal, fixed))
             .collect();
-        // centers on either side of the way may give the same shear, up to rounding
-        let against_shear: Vec<f64> = twists.iter().map(|twist| -twist.shear()).collect();
-        first_largest(&against_shear).map(|best| Self::Twist(twists[best]))
+        first_smallest(twists.iter().map(Twist::shear)).map(|best| Self::Twist(twists[best]))
     }
 
     /// Where a point of the unit sphere goes.
@@ -120,15 +125,19 @@ fn half_turn(point: Vector3) -> Motion {
     Motion::Rotation([0, 1, 2].map(|i| axis * (2.0 * axis[i]) - Vector3::unit(i)))
 }
 
-/// Centers equally far from both points, on either side of them.
-fn centers(start: Vector3, goal: Vector3) -> Vec<Vector3> {
+/// Centers equally far from both points, on either side of them, those of one side first.
+fn centers(start: Vector3, goal: Vector3, first: Side) -> Vec<Vector3> {
     let (middle, across) = (start + goal, start.cross(goal));
     if middle.norm() < 1e-9 || across.norm() == 0.0 {
         return Vec::new();
     }
     let (middle, across) = (middle.normalized(), across.normalized());
     let center = |distance: f64, side: f64| middle * distance.cos() + across * (side * distance.sin());
-    DISTANCES.iter().flat_map(|d| [-1.0, 1.0].map(|side| center(d / DEGREES, side))).collect()
+    let sides = match first {
+        Side::Left => [1.0, -1.0],
+        Side::Right => [-1.0, 1.0],
+    };
+    DISTANCES.iter().flat_map(|d| sides.map(|side| center(d / DEGREES, side))).collect()
 }
 
 /// The angle between two points of the unit sphere.
@@ -157,7 +166,7 @@ mod tests {
     #[test]
     fn a_twist_keeps_areas_and_fixed_points() {
         let (start, goal) = (Vector3([1.0, 0.05, 0.08]).normalized(), Vector3::unit(0));
-        let twist = Motion::twist(start, goal, &FIXED).unwrap();
+        let twist = Motion::twist(start, goal, &FIXED, Side::Left).unwrap();
         assert!(twist.image(start).distance(goal) < 1e-14);
         for point in FIXED {
             assert!(twist.image(point).distance(point) < 1e-14);
@@ -181,11 +190,13 @@ mod tests {
         for k in 0..20 {
             let angle = f64::from(k);
             let start = Vector3([0.02 * angle.cos(), 0.02 * angle.sin(), -1.0]).normalized();
-            let Some(Motion::Twist(twist)) = Motion::twist(start, goal, &[Vector3::unit(2)]) else {
-                panic!("there is room")
-            };
-            let side = twist.center.dot(start.cross(goal));
-            assert!(side < 0.0, "{k}: {side}");
+            for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
+                let Some(Motion::Twist(twist)) = Motion::twist(start, goal, &[Vector3::unit(2)], side) else {
+                    panic!("there is room")
+                };
+                let toward = sign * twist.center.dot(start.cross(goal));
+                assert!(toward > 0.0, "{k}, {side:?}: {toward}");
+            }
         }
     }
 
@@ -201,6 +212,6 @@ mod tests {
     #[test]
     fn there_is_no_twist_where_a_fixed_point_is_in_the_way() {
         let between = Vector3([1.0, 1.0, 0.0]).normalized();
-        assert!(Motion::twist(Vector3::unit(0), Vector3::unit(1), &[between]).is_none());
+        assert!(Motion::twist(Vector3::unit(0), Vector3::unit(1), &[between], Side::Left).is_none());
     }
 }

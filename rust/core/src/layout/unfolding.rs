@@ -137,6 +137,7 @@ mod tests {
     use crate::layout::polygons::Polygons;
     use crate::layout::sample_spheres::turned_ball;
     use crate::layout::singular_points::{Placed, SphereMesh, place_singular_points};
+    use crate::layout::twist::Side;
     use crate::mesh::corners::VertexCorners;
     use crate::mesh::geometry::{area, triangle};
 
@@ -156,7 +157,7 @@ mod tests {
         let mut silent = Silent;
         let watch = Watch::new(&mut silent, 0.0, "");
         let Placed { points, is_singular: fixed } =
-            place_singular_points::<P>(&mesh, 0, &watch).unwrap().unwrap();
+            place_singular_points::<P>(&mesh, 0, Side::Left, &watch).unwrap().unwrap();
         // 1. Some vertices far from the singular points go over their faces
         let mut chart = develop::<P>(&points, &faces, &polygons);
         let before = chart.images();

@@ -36,6 +36,11 @@ pub fn edge_lengths([a, b, c]: [Vector3; 3]) -> [f64; 3] {
     [b.distance(c), c.distance(a), a.distance(b)]
 }
 
+/// The height of a triangle over its longest edge; NaN where its corners all coincide.
+pub fn least_height(corners: [Vector3; 3]) -> f64 {
+    2.0 * area(corners) / edge_lengths(corners).into_iter().fold(0.0, f64::max)
+}
+
 /// The cotangents of the angles of a triangle of positive area.
 pub fn cotangents(corners: [Vector3; 3]) -> [f64; 3] {
     let double_area = 2.0 * area(corners);

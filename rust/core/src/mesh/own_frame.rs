@@ -12,8 +12,8 @@ use crate::vector::Vector3;
 /// Length, relative to the size of the surface, up to which a direction is taken for zero.
 const NO_DIRECTION: f64 = 1e-9;
 
-/// Length from which a direction is clear: noise of the vertices is noise of the direction a hundredfold at most.
-const CLEAR: f64 = 1e-2;
+/// Length from which a direction is clear: noise of the vertices is noise of the direction a thousandfold at most.
+const CLEAR: f64 = 1e-3;
 
 /// Place, size and directions of a surface.
 pub(crate) struct OwnFrame {
@@ -23,8 +23,8 @@ pub(crate) struct OwnFrame {
     pub size: f64,
     /// Orthogonal unit vectors; zero where there is no direction.
     pub axes: [Vector3; 3],
-    /// Whether both moments are long enough to tell where they point.
-    pub is_clear: bool,
+    /// How many of the first two axes are clear, since their moments are long.
+    pub n_clear: usize,
 }
 
 impl OwnFrame {
@@ -37,13 +37,13 @@ impl OwnFrame {
         // 1. Center and size
         let center = mean(&|x| x);
         let size = parallel::sum(n, |v| (points[v] - center).dot(points[v] - center) / n as f64).sqrt();
-        let frame = Self { center, size, axes: [Vector3::ZERO; 3], is_clear: false };
+        let frame = Self { center, size, axes: [Vector3::ZERO; 3], n_clear: 0 };
         // 2. The directions
         let skewness = mean(&|x| frame.standardized(x) * frame.standardized(x).dot(frame.standardized(x)));
         let stretched = mean(&|x| frame.standardized(x) * frame.standardized(x).dot(skewness));
         let across = stretched - skewness * (stretched.dot(skewness) / skewness.dot(skewness));
-        let is_clear = skewness.norm() > CLEAR && across.norm() > CLEAR * skewness.norm();
-        Self { axes: [skewness, across, skewness.cross(across)].map(unit), is_clear, ..frame }
+        let n_clear = [skewness, across].iter().take_while(|moment| moment.norm() > CLEAR).count();
+        Self { axes: [skewness, across, skewness.cross(across)].map(unit), n_clear, ..frame }
     }
 
     /// A point relative to the center and the size.
@@ -74,7 +74,7 @@ mod tests {
         let moved: Vec<Vector3> =
             points.iter().rev().map(|&x| rotate(turn, x) * 3.0 + Vector3([5.0, -1.0, 2.0])).collect();
         let [frame, other] = [OwnFrame::of(&points), OwnFrame::of(&moved)];
-        assert!(frame.is_clear && other.is_clear);
+        assert_eq!([frame.n_clear, other.n_clear], [2, 2]);
         assert!((other.size / frame.size - 3.0).abs() < 1e-14);
         assert!(other.center.distance(rotate(turn, frame.center) * 3.0 + Vector3([5.0, -1.0, 2.0])) < 1e-13);
         for (axis, turned) in frame.axes.iter().zip(other.axes) {
@@ -90,8 +90,8 @@ mod tests {
     fn the_directions_of_symmetric_points_are_not_clear() {
         let [x, y, z] = [0, 1, 2].map(Vector3::unit);
         let octahedron = OwnFrame::of(&[x, -x, y, -y, z, -z]);
-        assert!(!octahedron.is_clear && octahedron.axes == [Vector3::ZERO; 3]);
+        assert!(octahedron.n_clear == 0 && octahedron.axes == [Vector3::ZERO; 3]);
         let cone = OwnFrame::of(&[x, -x, y, -y, z * 3.0]);
-        assert!(!cone.is_clear && cone.axes[0].distance(z) < 1e-14 && cone.axes[1] == Vector3::ZERO);
+        assert!(cone.n_clear == 1 && cone.axes[0].distance(z) < 1e-14 && cone.axes[1] == Vector3::ZERO);
     }
 }

@@ -49,18 +49,22 @@ pub(crate) fn smallest_first(values: &[f64]) -> Vec<usize> {
     largest_first(&negative)
 }
 
-/// The place of the smallest of values; of those that are equal but for rounding, the lowest.
+/// The place of the smallest of values; of those that are equal but for rounding, the lowest; `None` without values.
 pub(crate) fn first_smallest(values: impl Iterator<Item = f64>) -> Option<usize> {
-    let values: Vec<f64> = values.collect();
-    let least = values.iter().copied().min_by(f64::total_cmp)?;
-    values.iter().position(|&value| are_equal(value, least))
+    let negative: Vec<f64> = values.map(|value| -value).collect();
+    first_largest(&negative)
 }
 
 /// A length or cost as a multiple of a small unit: sums are exact then, and mirror images of a path are equal whatever
 /// the noise.
-pub(crate) fn on_grid(value: f64) -> f64 {
+pub(crate) fn on_cost_grid(value: f64) -> f64 {
     const UNIT: f64 = 1.0 / (1 << 24) as f64;
     (value / UNIT).round().max(1.0) * UNIT
+}
+
+/// The multiple of a power of two that is nearest to a coordinate; zero without a sign, which noise would choose.
+pub(crate) fn nearest_multiple(x: f64, cell: f64) -> f64 {
+    (x / cell).round() * cell + 0.0
 }
 
 /// Sort keys that have come up so far, of which those that are equal but for noise are one.
@@ -70,7 +74,7 @@ pub(crate) fn on_grid(value: f64) -> f64 {
 pub(crate) struct DistinctKeys(BTreeSet<u64>);
 
 impl DistinctKeys {
-    /// The first key that came up within a distance of this one, or itself.
+    /// The lowest key so far within a distance of this one, or itself.
     pub(crate) fn one_of_equals(&mut self, key: u64, within: u64) -> u64 {
         let equals = key.saturating_sub(within)..=key.saturating_add(within);
         if let Some(&known) = self.0.range(equals).next() {
@@ -157,10 +161,22 @@ mod tests {
         assert!(largest_first(&[]).is_empty());
         assert_eq!(first_smallest([2.0, 1.0 + 1e-13, 1.0].into_iter()), Some(1));
         assert_eq!(first_smallest(std::iter::empty()), None);
+        // whatever sign NaN has, something is found
+        assert_eq!(first_smallest([-f64::NAN, 1.0].into_iter()), Some(0));
+        assert_eq!(first_smallest([f64::NAN, f64::NAN].into_iter()), Some(0));
+    }
+
+    #[test]
+    fn zero_has_no_sign_on_a_grid() {
+        assert_eq!(nearest_multiple(-1e-17, 0.25).to_bits(), 0.0f64.to_bits());
+        assert_eq!([0.3, -0.4, 0.1].map(|x| nearest_multiple(x, 0.25)), [0.25, -0.5, 0.0]);
     }
 
     #[test]
     fn keys_that_are_equal_but_for_noise_are_one() {
+        let mut keys = DistinctKeys::default();
+        let given = [111, 100, 105];
+        assert_eq!(given.map(|key| keys.one_of_equals(key, 10)), [111, 100, 100]);
         let mut keys = DistinctKeys::default();
         let given = [100, 130, 109, 91, 120, 111];
         assert_eq!(given.map(|key| keys.one_of_equals(key, 10)), [100, 130, 100, 100, 130, 111]);

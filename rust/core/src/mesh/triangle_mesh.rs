@@ -115,7 +115,8 @@ impl TriangleMesh {
         Self { points, ..self.clone() }
     }
 
-    /// The surface with other points, between which every face must have an area.
+    /// The surface with other points, between which every face must have an area, in a unit of their own: [`Self::scale`]
+    /// stays that of the points before.
     pub(crate) fn reshaped(&self, points: Vec<Vector3>) -> Self {
         Self { areas: geometry::face_areas(&points, &self.faces), ..self.at_points(points) }
     }

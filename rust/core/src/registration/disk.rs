@@ -69,7 +69,7 @@ pub fn register_disks(
             register_disks,
         );
     }
-    // who has ended the run is asked no more
+    // an observer that has cancelled the run is not asked again
     let observer: &mut dyn Observer = &mut Rising::new(observer);
     let mut history = History::start();
     // 1. Refuse what cannot be registered before any work
@@ -89,7 +89,7 @@ pub fn register_disks(
     };
     let laid = match options.energy {
         Energy::Area => pair.laid(landmarks, &mut history, observer)?,
-        Energy::Surface => pair.descended(&mut history, observer)?,
+        Energy::Surface => pair.descended(&mut history, observer)?.measured_on(pair.meshes)?,
     };
     let Laid { maps: [f, g], met, on_rim, locations, status, .. } = laid;
     // 3. Figures
@@ -154,6 +154,14 @@ struct Laid {
     status: Status,
 }
 
+impl Laid {
+    /// The same with the figures of the maps for the given surfaces.
+    fn measured_on(self, [source, target]: [&TriangleMesh; 2]) -> Result<Self, Error> {
+        let [f, g] = self.maps;
+        Ok(Self { maps: [f.measured_on(source)?, g.measured_on(target)?], ..self })
+    }
+}
+
 impl Pair<'_, '_> {
     /// Lays the disks over each other so that the energy between them is low: from a start with the extremities that
     /// they have in common, if there are some, and one without; large ones without alone.
@@ -186,9 +194,8 @@ impl Pair<'_, '_> {
         observer: &mut dyn Observer,
     ) -> Result<Laid, Error> {
         let options = self.options;
-        let of_side = [landmarks.source, landmarks.target];
-        let starts = [0, 1].map(|side| StartSurface::new(self.meshes[side], of_side[side], options.energy));
-        let [source, target]: [&TriangleMesh; 2] = [&starts[0].mesh, &starts[1].mesh];
+        let surfaces = StartSurface::of_both(self.meshes, landmarks, options.energy);
+        let [source, target]: [&TriangleMesh; 2] = [&surfaces[0].mesh, &surfaces[1].mesh];
         // 1. Both surfaces to the disk
         let alone = DiskMapOptions { angle_weight: options.angle_weight_in_domain(), ..Default::default() };
         let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
@@ -210,11 +217,7 @@ impl Pair<'_, '_> {
         let locator = Locator::new(&met.target, target.faces());
         let (mut locations, status) = located(&locator, &met.source, met.status, &mut phase)?;
         on_rim.set(&mut locations);
-        let maps = match options.energy {
-            Energy::Surface => [f.measured_on(self.meshes[0])?, g.measured_on(self.meshes[1])?],
-            Energy::Area => [f, g],
-        };
-        Ok(Laid { maps, met, on_rim, locations, energy: f64::INFINITY, status })
+        Ok(Laid { maps: [f, g], met, on_rim, locations, energy: f64::INFINITY, status })
     }
 
     /// Carries the source's landmarks to the target's; if some are missed also the target's to the source's, if that is

@@ -31,7 +31,8 @@ pub struct Registration<Map> {
     /// moving the source's landmarks alone misses some.
     pub target_registered: Array2<f64>,
     /// The map of the source alone, from which the registration started; of large spheres the refined map of a coarse
-    /// mesh.
+    /// mesh. With [`Energy::Surface`](super::Energy::Surface) it is a map of the surface with rounded vertices: its history
+    /// is of that, its figures are of the source as given.
     pub source_map: Map,
     /// The map of the target alone, likewise.
     pub target_map: Map,

@@ -48,7 +48,7 @@ const SWEEPS: usize = 4;
 const MET: f64 = 1e-9;
 
 /// Sine of the angle between two points up to which they lie about one axis.
-const ON_ONE_AXIS: f64 = 0.1;
+const ON_ONE_AXIS: f64 = 1e-2;
 
 /// Weight, against that of a landmark, of the wish to rotate as little as possible.
 const LEAST_TURN: f64 = 1e-9;
@@ -185,21 +185,30 @@ struct Laid {
 }
 
 impl Laid {
-    /// The same in the coordinates of the `given` surfaces, with the figures of their maps; a map stays as it is where
-    /// rounding would fold a sliver.
-    fn turned_back(self, given: [&TriangleMesh; 2]) -> Result<Self, Error> {
-        let folds = |mesh: &TriangleMesh, map: &[Vector3]| !folded_on_sphere(mesh.faces(), map).is_empty();
-        let turned = |side: usize, map: SphereMap| {
-            let turned = turned_back(self.axes[side], &vectors(map.positions.view()));
-            let positions = if folds(given[side], &turned) { map.positions } else { from_vectors(turned) };
-            SphereMap { positions, ..map }.measured_on(given[side])
+    /// The same in the coordinates of the `given` surfaces, with the figures of their maps; what lies in one frame stays as
+    /// it is where rounding would fold a sliver.
+    fn turned_back(self, [source, target]: [&TriangleMesh; 2]) -> Result<Self, Error> {
+        let is_folded =
+            |mesh: &TriangleMesh, map: &[Vector3]| !folded_on_sphere(mesh.faces(), map).is_empty();
+        let folds = |(mesh, before, after): (&TriangleMesh, &[Vector3], &[Vector3])| {
+            is_folded(mesh, after) && !is_folded(mesh, before)
         };
-        let [f0, f1] = self.maps;
-        let maps = [turned(0, f0)?, turned(1, f1)?];
-        let both = self.registered.each_ref().map(|map| turned_back(self.axes[1], map));
-        let registered =
-            if (0..2).any(|side| folds(given[side], &both[side])) { self.registered } else { both };
-        Ok(Self { maps, registered, ..self })
+        let [f0, f1] = self.maps.each_ref().map(|map| vectors(map.positions.view()));
+        let [h0, h1] = &self.registered;
+        let back = |side: usize, map: &[Vector3]| turned_back(self.axes[side], map);
+        // 1. f₀ from the source's frame
+        let turned = back(0, &f0);
+        let f0 = if folds((source, &f0, &turned)) { f0 } else { turned };
+        // 2. All else from the target's
+        let turned = [back(1, &f1), back(1, h0), back(1, h1)];
+        let pairs = [(target, &f1[..], &turned[0][..]), (source, h0, &turned[1]), (target, h1, &turned[2])];
+        let [f1, h0, h1] = if pairs.into_iter().any(folds) { [f1, h0.clone(), h1.clone()] } else { turned };
+        let [of_source, of_target] = self.maps;
+        let maps = [
+            SphereMap { positions: from_vectors(f0), ..of_source }.measured_on(source)?,
+            SphereMap { positions: from_vectors(f1), ..of_target }.measured_on(target)?,
+        ];
+        Ok(Self { maps, registered: [h0, h1], ..self })
     }
 }
 
@@ -336,9 +345,8 @@ impl Pair<'_, '_> {
         observer: &mut dyn Observer,
     ) -> Result<Laid, Error> {
         let &Self { signals, options, .. } = self;
-        let of_side = [landmarks.source, landmarks.target];
-        let starts = [0, 1].map(|side| StartSurface::new(self.meshes[side], of_side[side], options.energy));
-        let [source, target]: [&TriangleMesh; 2] = [&starts[0].mesh, &starts[1].mesh];
+        let surfaces = StartSurface::of_both(self.meshes, landmarks, options.energy);
+        let [source, target]: [&TriangleMesh; 2] = [&surfaces[0].mesh, &surfaces[1].mesh];
         // 1. Both surfaces to the sphere
         let alone = SphereMapOptions { angle_weight, ..Default::default() };
         let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
@@ -350,7 +358,7 @@ impl Pair<'_, '_> {
         let [on_sphere, target_on_sphere] = [&f0, &f1].map(|map| vectors(map.positions.view()));
         let by_landmarks = self
             .is_laid_by_landmarks()
-            .then(|| turned(&starts, on_sphere.clone(), landmarks, &target_on_sphere));
+            .then(|| turned(&surfaces, on_sphere.clone(), landmarks, &target_on_sphere));
         let (turned, start) = match by_landmarks {
             Some(turned) if options.features.is_none() => (turned, Status::Converged),
             by_landmarks => aligned(
@@ -381,7 +389,7 @@ impl Pair<'_, '_> {
         // 4. The source's locations on the target
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
         let status = worst([start, first, second]);
-        let axes = starts.each_ref().map(|start| start.axes);
+        let axes = surfaces.each_ref().map(|surface| surface.axes);
         self.located(axes, [f0, f1], [registered, target_registered], status, &mut phase)
     }
 }
@@ -407,7 +415,7 @@ fn volume(mesh: &TriangleMesh) -> f64 {
 /// The source's map rotated so that its landmarks come nearest to the target's, or as it is if rounding would
 /// fold a sliver.
 fn turned(
-    starts: &[StartSurface<'_>; 2],
+    surfaces: &[StartSurface<'_>; 2],
     f0: Vec<Vector3>,
     landmarks: &Landmarks<'_>,
     f1: &[Vector3],
@@ -418,8 +426,8 @@ fn turned(
     if !determine_rotation(&pairs) {
         // the least of equally good rotations
         let axes = [0, 1, 2].map(Vector3::unit);
-        ours.extend(axes.map(|axis| starts[0].turned(axis)));
-        theirs.extend(axes.map(|axis| starts[1].turned(axis)));
+        ours.extend(axes.map(|axis| surfaces[0].turned(axis)));
+        theirs.extend(axes.map(|axis| surfaces[1].turned(axis)));
         weights.extend([LEAST_TURN; 3]);
     }
     let rotation = best_rotation(&ours, &theirs, &weights);
@@ -427,11 +435,11 @@ fn turned(
         let turned = rotate(rotation, f0[vertex]);
         turned.normalized()
     });
-    if folded_on_sphere(starts[0].mesh.faces(), &turned).is_empty() { turned } else { f0 }
+    if folded_on_sphere(surfaces[0].mesh.faces(), &turned).is_empty() { turned } else { f0 }
 }
 
-/// Whether only one rotation lays the first points of the pairs best over the second ones: some do not lie about one axis,
-/// as those of two opposite landmarks do.
+/// Whether some points do not lie about one axis on either side, as those of two opposite landmarks do: the best rotation is
+/// then determined.
 fn determine_rotation(pairs: &[[Vector3; 2]]) -> bool {
     let spread = |i: usize, j: usize| {
         let across = [0, 1].map(|side| pairs[i][side].cross(pairs[j][side]).norm());

@@ -9,10 +9,12 @@
 
 use std::borrow::Cow;
 
+use super::landmarks::Landmarks;
 use super::options::Energy;
 use crate::alignment::rotation::rotate;
-use crate::mesh::geometry::{area, edge_lengths, triangle};
+use crate::mesh::geometry::{least_height, triangle};
 use crate::mesh::own_frame::OwnFrame;
+use crate::mesh::ties::nearest_multiple;
 use crate::mesh::{TriangleMesh, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
@@ -31,24 +33,31 @@ pub(super) struct StartSurface<'a> {
 }
 
 impl<'a> StartSurface<'a> {
-    /// The surface in its own frame with its vertices on the grid where a descent between the surfaces follows; as it is
+    /// The surfaces in their own frames with their vertices on the grid where a descent between them follows; as they are
     /// where the start is the result.
-    pub fn new(mesh: &'a TriangleMesh, landmarks: &[usize], energy: Energy) -> Self {
-        let as_given = [0, 1, 2].map(Vector3::unit);
-        match energy {
-            Energy::Area => Self { mesh: Cow::Borrowed(mesh), axes: as_given },
-            Energy::Surface => {
-                let frame = OwnFrame::of(mesh.points());
-                let of_landmarks = || {
-                    let places = landmarks.iter().map(|&vertex| frame.standardized(mesh.points()[vertex]));
-                    axes_through(&places.collect::<Vec<_>>())
-                };
-                let axes = frame.is_clear.then_some(frame.axes).or_else(of_landmarks).unwrap_or(as_given);
-                let turned = |v: usize| rotate(axes, frame.standardized(mesh.points()[v]));
-                let turned = parallel::map(mesh.n_vertices(), turned);
-                Self { mesh: Cow::Owned(on_grid(mesh, &turned)), axes }
-            }
-        }
+    pub fn of_both(meshes: [&'a TriangleMesh; 2], landmarks: &Landmarks<'_>, energy: Energy) -> [Self; 2] {
+        let landmarks = [landmarks.source, landmarks.target];
+        [0, 1].map(|side| match energy {
+            Energy::Area => Self::as_given(meshes[side]),
+            Energy::Surface => Self::rounded(meshes[side], landmarks[side]),
+        })
+    }
+
+    fn as_given(mesh: &'a TriangleMesh) -> Self {
+        Self { mesh: Cow::Borrowed(mesh), axes: [0, 1, 2].map(Vector3::unit) }
+    }
+
+    /// The surface in its own frame with its vertices on the grid; as it is where faces would lose their areas.
+    fn rounded(mesh: &'a TriangleMesh, landmarks: &[usize]) -> Self {
+        let frame = OwnFrame::of(mesh.points());
+        let as_given = Self::as_given(mesh);
+        let clear = frame.axes[..frame.n_clear].iter().copied();
+        let marked = landmarks.iter().map(|&vertex| frame.standardized(mesh.points()[vertex]));
+        let axes = axes_through(&clear.chain(marked).collect::<Vec<_>>()).unwrap_or(as_given.axes);
+        let turned = |vertex: usize| rotate(axes, frame.standardized(mesh.points()[vertex]));
+        let on_grid = rounded_to(mesh, &parallel::map(mesh.n_vertices(), turned));
+        let has_areas = parallel::all(on_grid.n_faces(), |face| on_grid.face_areas()[face] > 0.0);
+        if has_areas { Self { mesh: Cow::Owned(on_grid), axes } } else { as_given }
     }
 
     /// A vector of the given surface in the coordinates of this one.
@@ -57,7 +66,7 @@ impl<'a> StartSurface<'a> {
     }
 }
 
-/// Axes toward the first of some places that is away from the origin, and on to the first beside that axis.
+/// Axes toward the first of some places that is away from the origin, and toward the first beside that axis.
 fn axes_through(places: &[Vector3]) -> Option<[Vector3; 3]> {
     let first = places.iter().find(|place| place.norm() > LONG)?.normalized();
     let across = |place: &Vector3| *place - first * first.dot(*place);
@@ -72,16 +81,13 @@ pub(super) fn turned_back(axes: [Vector3; 3], points: &[Vector3]) -> Vec<Vector3
 }
 
 /// The surface with its vertices at the points of the grid nearest to these.
-fn on_grid(mesh: &TriangleMesh, points: &[Vector3]) -> TriangleMesh {
-    let heights = parallel::map(mesh.n_faces(), |face| {
-        let corners = triangle(points, mesh.faces()[face]);
-        2.0 * area(corners) / edge_lengths(corners).into_iter().fold(0.0, f64::max)
-    });
+fn rounded_to(mesh: &TriangleMesh, points: &[Vector3]) -> TriangleMesh {
+    let heights = parallel::map(mesh.n_faces(), |face| least_height(triangle(points, mesh.faces()[face])));
     mesh.reshaped(parallel::map(points.len(), |vertex| {
         let around = mesh.vertex_corners(Vertex::new(vertex)).iter();
         let least = around.map(|corner| heights[corner.face()]).fold(f64::INFINITY, f64::min);
         let cell = (CELL * least).log2().round().exp2();
-        points[vertex].map(|x| (x / cell).round() * cell)
+        points[vertex].map(|x| nearest_multiple(x, cell))
     }))
 }
 
@@ -90,7 +96,7 @@ mod tests {
     use super::*;
     use crate::alignment::rotation::rotation_of;
     use crate::location::tests::{octasphere, rings};
-    use crate::mesh::geometry::area_vector;
+    use crate::mesh::geometry::{area, area_vector};
 
     /// Points moved by about 10⁻¹².
     fn with_noise(points: &[Vector3]) -> Vec<Vector3> {
@@ -125,7 +131,11 @@ mod tests {
     }
 
     fn on_grid(mesh: &TriangleMesh) -> TriangleMesh {
-        StartSurface::new(mesh, &[], Energy::Surface).mesh.into_owned()
+        StartSurface::rounded(mesh, &[]).mesh.into_owned()
+    }
+
+    fn bits(points: &[Vector3]) -> Vec<[u64; 3]> {
+        points.iter().map(|point| point.0.map(f64::to_bits)).collect()
     }
 
     #[test]
@@ -134,7 +144,7 @@ mod tests {
             let noisy = sample(&with_noise(mesh.points()), mesh.faces());
             assert!(noisy.points() != mesh.points() && noisy.face_areas() != mesh.face_areas());
             let [noisy, mesh] = [on_grid(&noisy), on_grid(&mesh)];
-            assert!(noisy.points() == mesh.points() && noisy.face_areas() == mesh.face_areas());
+            assert!(bits(noisy.points()) == bits(mesh.points()) && noisy.face_areas() == mesh.face_areas());
         }
     }
 
@@ -143,14 +153,13 @@ mod tests {
         // a ball has no directions but those of its landmarks
         let (points, faces) = octasphere(3);
         let ball = sample(&points, &faces);
-        assert!(!OwnFrame::of(ball.points()).is_clear);
+        assert_eq!(OwnFrame::of(ball.points()).n_clear, 0);
         for mesh in samples().into_iter().chain([ball]) {
             let turn = rotation_of([0.8, 0.36, -0.48, 0.0]);
             let moved: Vec<Vector3> =
                 mesh.points().iter().map(|&x| rotate(turn, x) * 3.0 + Vector3([5.0, -1.0, 2.0])).collect();
             let moved = sample(&moved, mesh.faces());
-            let [ours, theirs] =
-                [&mesh, &moved].map(|mesh| StartSurface::new(mesh, &[3, 7, 11], Energy::Surface));
+            let [ours, theirs] = [&mesh, &moved].map(|mesh| StartSurface::rounded(mesh, &[3, 7, 11]));
             assert!(ours.mesh.points() == theirs.mesh.points());
             // a direction of the given surface and its image are the same in the frame, and come back from there
             let [x, y] = [Vector3([0.6, 0.0, 0.8]), rotate(turn, Vector3([0.6, 0.0, 0.8]))];
@@ -183,11 +192,40 @@ mod tests {
     }
 
     #[test]
+    fn a_surface_whose_faces_would_lose_their_areas_stays_as_it_is() {
+        // rings that shrink tenfold about a point far from the mean of the vertices
+        let (n_rings, n) = (24, 8);
+        let ring = |k: usize| {
+            let radius = 10f64.powi(-(k as i32));
+            (0..n).map(f64::from).map(move |i| {
+                let (sine, cosine) = (std::f64::consts::TAU * i / f64::from(n)).sin_cos();
+                [radius * cosine, radius * sine, if k == 0 { sine } else { 0.0 }]
+            })
+        };
+        let vertices: Vec<[f64; 3]> = (0..n_rings).flat_map(ring).collect();
+        let n = n as u32;
+        let quad = |k: u32, i: u32| {
+            let [a, b] = [n * k + i, n * k + (i + 1) % n];
+            [[a, b, b + n], [a, b + n, a + n]]
+        };
+        let faces: Vec<[u32; 3]> =
+            (0..n_rings as u32 - 1).flat_map(|k| (0..n).flat_map(move |i| quad(k, i))).collect();
+        let mesh = TriangleMesh::new(&vertices, &faces).unwrap();
+        let start = StartSurface::rounded(&mesh, &[]);
+        assert!(start.mesh.face_areas().iter().all(|&area| area > 0.0));
+        assert!(start.mesh.points().iter().flat_map(|point| point.0).all(f64::is_finite));
+    }
+
+    #[test]
     fn where_the_start_is_the_result_nothing_moves() {
-        for mesh in samples() {
-            let start = StartSurface::new(&mesh, &[], Energy::Area);
+        let meshes = samples();
+        let landmarks = Landmarks { source: &[3, 7, 11], target: &[3, 7, 11] };
+        let starts = StartSurface::of_both(meshes.each_ref(), &landmarks, Energy::Area);
+        for (start, mesh) in starts.iter().zip(&meshes) {
             assert!(start.mesh.points() == mesh.points() && start.mesh.face_areas() == mesh.face_areas());
             assert!(start.turned(Vector3([1.0, 2.0, 3.0])) == Vector3([1.0, 2.0, 3.0]));
         }
+        let rounded = StartSurface::of_both(meshes.each_ref(), &landmarks, Energy::Surface);
+        assert!(rounded.iter().zip(&meshes).all(|(start, mesh)| start.mesh.points() != mesh.points()));
     }
 }

@@ -7,7 +7,7 @@
 //! in rounds. Cost: a sort of the edges a round; there are few.
 
 use super::draft::Draft;
-use crate::mesh::geometry::{area, edge_lengths};
+use crate::mesh::geometry::{edge_lengths, least_height};
 use crate::mesh::{Corner, EdgeTable, Face, Vertex};
 use crate::sets::Sets;
 use crate::vector::Vector3;
@@ -42,9 +42,7 @@ pub(super) fn remove_slivers(draft: &mut Draft, largest: f64) -> usize {
 }
 
 fn is_flat(corners: [Vector3; 3], flat_height: f64) -> bool {
-    let longest = edge_lengths(corners).into_iter().fold(0.0, f64::max);
-    let height = 2.0 * area(corners) / longest;
-    // NaN: the corners all coincide, 0 / 0
+    let height = least_height(corners);
     height.is_nan() || height <= flat_height
 }
 

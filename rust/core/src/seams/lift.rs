@@ -18,7 +18,7 @@ use super::cut::{Cut, Segment};
 use super::edge_mesh::EdgeMesh;
 use crate::control::Watch;
 use crate::error::Error;
-use crate::mesh::ties::on_grid;
+use crate::mesh::ties::on_cost_grid;
 use crate::mesh::{Edge, Vertex};
 use crate::vector::Vector3;
 
@@ -66,7 +66,7 @@ impl Lift<'_> {
     pub(super) fn of(&self, cut: &Cut, watch: &Watch<'_>) -> Result<Cut, Error> {
         let mut segments = cut.segments(self.proxy);
         let length = |segment: &Segment| -> f64 {
-            segment.edges.iter().map(|&edge| on_grid(self.proxy.lengths[edge])).sum()
+            segment.edges.iter().map(|&edge| on_cost_grid(self.proxy.lengths[edge])).sum()
         };
         segments.sort_by(|a, b| length(b).total_cmp(&length(a)));
         let reach = cut.sum(&self.proxy.lengths) / cut.seams().count().max(1) as f64;
@@ -264,12 +264,12 @@ impl<'a> PathFinder<'a> {
         if ends.into_iter().any(is_blocked) {
             cost *= TAKEN_FACTOR;
         }
-        on_grid(if distance > FAR { cost * FAR_FACTOR } else { cost })
+        on_cost_grid(if distance > FAR { cost * FAR_FACTOR } else { cost })
     }
 
     fn turning_cost(&self, from: u32, to: u32) -> f64 {
         let cosine = self.direction(from).dot(self.direction(to)).clamp(-1.0, 1.0);
-        on_grid(self.turn * (cosine.acos() / std::f64::consts::FRAC_PI_2).powf(TURN_POWER))
+        on_cost_grid(self.turn * (cosine.acos() / std::f64::consts::FRAC_PI_2).powf(TURN_POWER))
     }
 
     fn direction(&self, edge: u32) -> Vector3 {

@@ -8,7 +8,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::edge_mesh::EdgeMesh;
-use crate::mesh::ties::on_grid;
+use crate::mesh::ties::on_cost_grid;
 use crate::mesh::{Edge, Vertex};
 
 /// The cheapest paths from some vertices to all others.
@@ -83,7 +83,8 @@ pub(super) fn far_points(mesh: &EdgeMesh, start: Vertex, n: usize, length: &[f64
 
 /// Vertices far from each other in the largest part of the mesh that edges of finite `cost` join.
 pub(super) fn far_points_within_reach(mesh: &EdgeMesh, n: usize, cost: &[f64]) -> Vec<Vertex> {
-    let open = |(&length, cost): (&f64, &f64)| if cost.is_finite() { on_grid(length) } else { f64::INFINITY };
+    let open =
+        |(&length, cost): (&f64, &f64)| if cost.is_finite() { on_cost_grid(length) } else { f64::INFINITY };
     let lengths: Vec<_> = mesh.lengths.iter().zip(cost).map(open).collect();
     far_points(mesh, first_of_largest_part(mesh, cost), n, &lengths)
 }

@@ -20,7 +20,7 @@ use super::search::{Figures, Problem, Search, Solution, with_partners};
 use super::symmetry::{MirrorPlane, mirror_vertices};
 use crate::control::{Observer, Phase, Watch};
 use crate::error::Error;
-use crate::mesh::ties::on_grid;
+use crate::mesh::ties::on_cost_grid;
 use crate::mesh::{Edge, Vertex};
 use crate::vector::Vector3;
 
@@ -446,8 +446,8 @@ fn mirror_nearest(nearest: &mut [Vertex], mirror: &[Vertex], of_proxy: Option<&[
 
 /// The costs with the mean of each edge's cost and that of its mirror image in place of both.
 fn symmetric_costs(costs: Vec<f64>, mirror: Option<&[Edge]>) -> Vec<f64> {
-    let Some(mirror) = mirror else { return costs.into_iter().map(on_grid).collect() };
-    mirror.iter().zip(&costs).map(|(&image, cost)| on_grid(0.5 * (cost + costs[image]))).collect()
+    let Some(mirror) = mirror else { return costs.into_iter().map(on_cost_grid).collect() };
+    mirror.iter().zip(&costs).map(|(&image, cost)| on_cost_grid(0.5 * (cost + costs[image]))).collect()
 }
 
 /// What all costs of seams have in common.
@@ -500,7 +500,7 @@ impl View<'_> {
             if parents.is_some_and(|parents| parents[edge].is_none()) {
                 *cost = f64::INFINITY;
             }
-            *cost = on_grid(*cost);
+            *cost = on_cost_grid(*cost);
         }
         cost
     }

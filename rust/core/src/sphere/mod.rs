@@ -164,7 +164,7 @@ pub(crate) fn map_sphere(
     options: &SphereMapOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<SphereMap, Error> {
-    // who has ended the run is asked no more
+    // an observer that has cancelled the run is not asked again
     let observer: &mut dyn Observer = &mut Rising::new(observer);
     let mut history = History::start();
     let options = &options.by_ref();

@@ -120,7 +120,8 @@ fn conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<
 }
 
 /// A nearly conformal map, centered, without folds except by rounding: cotangents are clamped to positive, moderate
-/// values. Given vertices tell the sides of a symmetric surface apart, which begin the map otherwise.
+/// values. The `given` vertices, if any, choose among equally round faces, as on a symmetric surface: the map begins at the
+/// one nearest to them.
 ///
 /// # Errors
 /// As [`conformal`], which is not to be expected, and [`Error::CancelledEarly`].
@@ -166,7 +167,8 @@ fn upright(map: SpatialMap, removed: [Vertex; 3]) -> SpatialMap {
     })
 }
 
-/// The face nearest to an equilateral triangle; of several the one nearest to the middle of given vertices, and the lowest.
+/// The face nearest to an equilateral triangle; of several, preferences ([`tie_breakers`]) and nearness to the mean of the
+/// given vertices decide, then the lowest index.
 fn roundest_face(mesh: &TriangleMesh, given: &[Vertex]) -> usize {
     let roundness = |face: usize| {
         let [a, b, c] = triangle(mesh.points(), mesh.faces()[face]);
@@ -269,4 +271,38 @@ fn solve_three([a, b, c]: [Vector3; 3], rhs: Vector3) -> Option<Vector3> {
     let sum = b.cross(c) * rhs[0] + c.cross(a) * rhs[1] + a.cross(b) * rhs[2];
     let solution = sum * (1.0 / determinant);
     solution.is_finite().then_some(solution)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::location::tests::octasphere;
+
+    /// A ball with noise of about 10⁻¹².
+    fn ball(seed: usize) -> TriangleMesh {
+        let (points, faces) = octasphere(3);
+        let noise = |k: usize| 1e-12 * ((k * 7919 + seed * 104_729) % 1000) as f64 / 1000.0;
+        let moved =
+            |(k, &Vector3([x, y, z])): (usize, &Vector3)| [x + noise(k), y - noise(k + 1), z + noise(k + 2)];
+        let vertices: Vec<[f64; 3]> = points.iter().enumerate().map(moved).collect();
+        TriangleMesh::new(&vertices, &faces).unwrap()
+    }
+
+    #[test]
+    fn of_equally_round_faces_given_vertices_choose_and_not_noise() {
+        let (points, _) = octasphere(3);
+        for direction in [Vector3([0.6, 0.5, 0.7]), Vector3([-0.6, -0.5, -0.7]), Vector3([0.6, -0.7, 0.5])] {
+            let away = |&a: &Vertex, &b: &Vertex| {
+                points[a].distance(direction).total_cmp(&points[b].distance(direction))
+            };
+            let given = [Vertex::all(points.len()).min_by(away).unwrap()];
+            let face = roundest_face(&ball(0), &given);
+            let corners = triangle(&points, ball(0).faces()[face]);
+            let middle = corners.into_iter().sum::<Vector3>();
+            assert!((0..3).all(|axis| middle[axis] * direction[axis] > 0.0), "{middle:?} {direction:?}");
+            assert!((1..6).all(|seed| roundest_face(&ball(seed), &given) == face));
+        }
+        let face = roundest_face(&ball(0), &[]);
+        assert!((1..6).all(|seed| roundest_face(&ball(seed), &[]) == face));
+    }
 }

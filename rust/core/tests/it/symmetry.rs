@@ -98,11 +98,13 @@ fn of_symmetric_loops_around_a_handle_noise_chooses_none() {
         let closed = repair(aview2(&vertices), aview2(&torus.faces), &options).unwrap();
         (closed.counts.closed_handles, closed.surface.faces().to_owned())
     };
-    assert_alike(draws(&torus).into_iter().map(faces));
+    let all: Vec<_> = draws(&torus).into_iter().map(faces).collect();
+    assert_eq!(all[0].0, 1);
+    assert_alike(all);
 }
 
 #[test]
-fn holes_of_one_size_are_closed_in_the_order_of_their_vertices() {
+fn noise_does_not_choose_the_order_in_which_holes_of_one_size_are_closed() {
     let tube = tube(12, 7);
     let options = RepairOptions { close_holes: CloseHoles::All, ..Default::default() };
     let faces = |vertices: Vec<[f64; 3]>| {
@@ -140,7 +142,7 @@ fn the_structure_between_symmetric_holes_does_not_depend_on_noise() {
 }
 
 #[test]
-fn equal_islands_are_packed_in_their_order_whatever_the_noise() {
+fn noise_does_not_choose_the_places_of_equal_islands() {
     let faces = [[0, 1, 2].map(Vertex), [0, 2, 3].map(Vertex)];
     for (n, rotation) in [5, 40, 100, 1200]
         .into_iter()

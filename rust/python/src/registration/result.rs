@@ -52,6 +52,9 @@ pub struct Registration {
     target_faces: Py<PyArray2<i64>>,
     /// DiskMap or SphereMap: the map of the source alone.
     ///
+    /// With `energy="surface"` a map of the surface with rounded vertices, which is only a start: its history is of that,
+    /// its figures are of the source as given.
+    ///
     /// By curves: a rough map onto the sphere, which may have folds and has no iterations.
     #[pyo3(get)]
     source_map: Py<PyAny>,

@@ -9,7 +9,7 @@ use std::collections::BinaryHeap;
 
 use super::cutting::Cutting;
 use crate::mesh::Vertex;
-use crate::mesh::ties::on_grid;
+use crate::mesh::ties::on_cost_grid;
 
 /// Vertices in the order of their distances; the bits of nonnegative floats are ordered like the floats.
 type Queue = BinaryHeap<Reverse<(u64, Vertex)>>;
@@ -63,7 +63,7 @@ pub(super) fn cheapest_path(
                 continue;
             }
             // of symmetric paths rounding must not choose
-            let total = spent + on_grid(cost(vertex, neighbor));
+            let total = spent + on_cost_grid(cost(vertex, neighbor));
             if total < best[neighbor].0 {
                 best[neighbor] = (total, vertex);
                 queue.push(Reverse((total.to_bits(), neighbor)));

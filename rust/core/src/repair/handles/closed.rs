@@ -2,7 +2,7 @@
 //! A surface whose boundary loops are closed by cones, so that every corner has an opposite one.
 
 use crate::filling::{apex_of, cone};
-use crate::mesh::ties::on_grid;
+use crate::mesh::ties::on_cost_grid;
 use crate::mesh::{Corner, EdgeTable, Topology, Vertex, VertexCorners};
 use crate::repair::draft::Draft;
 use crate::vector::Vector3;
@@ -52,6 +52,6 @@ impl ClosedMesh {
 
     /// The length of an edge, never zero, rounded so that symmetric loops are equally long.
     pub(super) fn length(&self, from: Vertex, to: Vertex) -> f64 {
-        on_grid(self.points[from].distance(self.points[to]))
+        on_cost_grid(self.points[from].distance(self.points[to]))
     }
 }

@@ -236,7 +236,7 @@ impl<'a> Decimation<'a> {
         key
     }
 
-    /// The key that stands for those equal to one, in the queue: the first of them.
+    /// The key that stands for those equal to one, in the queue.
     fn one_of_equals(&mut self, key: u64) -> u64 {
         self.distinct_keys.as_mut().map_or(key, |distinct| distinct.one_of_equals(key, EQUAL_KEYS))
     }

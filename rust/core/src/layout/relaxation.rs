@@ -7,8 +7,8 @@
 //! less far.
 //!
 //! Areas leave open where vertices lie, and noise in the input grows from step to step. If any area is off, the vertices
-//! are first put on a grid that is fine beside faces and coarse beside noise ([`put_on_grid`]), as targets are rounded before: nearly the
-//! same map is laid out in the same places.
+//! are first put on a grid that is fine beside faces and coarse beside noise ([`put_on_grid`]), as targets are rounded
+//! before: nearly the same map is laid out in the same places.
 //!
 //! At first every triangle has its own target. Then only polygons have: their triangles keep the shares that they have
 //! by then, so that rows of quads stay rows.
@@ -23,7 +23,7 @@ use super::polygons::Polygons;
 use super::projection::Projection;
 use crate::control::{Observer, Status, Watch};
 use crate::mesh::corners::VertexCorners;
-use crate::mesh::ties::nearest_multiple;
+use crate::mesh::ties::{nearest_multiple, nearest_power_of_two};
 use crate::mesh::{Face, Vertex};
 use crate::parallel;
 
@@ -98,7 +98,7 @@ pub(super) fn put_on_grid<P: Projection>(chart: &mut Chart<'_, P>, goal: &Goal<'
     let to_grid = parallel::map(start.len(), |vertex| {
         let corners = patch.corners.of(Vertex::new(vertex));
         let least = corners.iter().map(|corner| targets[corner.face()]).fold(f64::INFINITY, f64::min);
-        let cell = (CELL * least.sqrt()).log2().round().exp2();
+        let cell = nearest_power_of_two(CELL * least.sqrt());
         start[vertex].map(|x| nearest_multiple(x, cell) - x)
     });
     let images = patch.images(chart);

@@ -67,6 +67,11 @@ pub(crate) fn nearest_multiple(x: f64, cell: f64) -> f64 {
     (x / cell).round() * cell + 0.0
 }
 
+/// The power of two nearest to a width, as the ratio of both counts: the cells of a grid on which coordinates are exact.
+pub(crate) fn nearest_power_of_two(width: f64) -> f64 {
+    width.log2().round().exp2()
+}
+
 /// Sort keys that have come up so far, of which those that are equal but for noise are one.
 ///
 /// Rounding does not do for many keys: some would lie at the border of two cells, and noise would choose between these.

@@ -14,7 +14,7 @@ use super::options::Energy;
 use crate::alignment::rotation::rotate;
 use crate::mesh::geometry::{least_height, triangle};
 use crate::mesh::own_frame::OwnFrame;
-use crate::mesh::ties::nearest_multiple;
+use crate::mesh::ties::{nearest_multiple, nearest_power_of_two};
 use crate::mesh::{TriangleMesh, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
@@ -86,7 +86,7 @@ fn rounded_to(mesh: &TriangleMesh, points: &[Vector3]) -> TriangleMesh {
     mesh.reshaped(parallel::map(points.len(), |vertex| {
         let around = mesh.vertex_corners(Vertex::new(vertex)).iter();
         let least = around.map(|corner| heights[corner.face()]).fold(f64::INFINITY, f64::min);
-        let cell = (CELL * least).log2().round().exp2();
+        let cell = nearest_power_of_two(CELL * least);
         points[vertex].map(|x| nearest_multiple(x, cell))
     }))
 }

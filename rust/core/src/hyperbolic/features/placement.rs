@@ -93,10 +93,10 @@ pub(crate) fn placed(
             [normalized(meshes[0], "source_sphere", source)?, normalized(meshes[1], "target_sphere", target)?]
         }
         None => {
-            let ours: Vec<Vertex> =
-                divided.pairs.iter().flat_map(|pair| pair.source.iter().copied()).collect();
-            let theirs: Vec<Vertex> =
-                divided.pairs.iter().flat_map(|pair| pair.target.iter().copied()).collect();
+            let of_curves = |of: fn(&CurvePair) -> &Vec<Vertex>| -> Vec<Vertex> {
+                divided.pairs.iter().flat_map(of).copied().collect()
+            };
+            let [ours, theirs] = [of_curves(|pair| &pair.source), of_curves(|pair| &pair.target)];
             [upright(meshes[0], &ours, watch)?, upright(meshes[1], &theirs, watch)?]
         }
     };

@@ -11,6 +11,7 @@ use super::newton::Moving;
 use super::sweep::Colors;
 use super::target::Placed;
 use crate::location::Location;
+use crate::mesh::ties::nearest_power_of_two;
 use crate::mesh::{Face, Vertex};
 use crate::parallel;
 
@@ -32,7 +33,7 @@ impl Moving<'_, '_> {
         let energy = self.energy;
         let n_faces = [energy.source.n_faces(), energy.target.mesh().n_faces()];
         let density = (n_faces[0] as f64 / n_faces[1] as f64).sqrt();
-        let cells = CELLS * density.max(1.0).log2().round().exp2();
+        let cells = CELLS * nearest_power_of_two(density.max(1.0));
         let before = energy.face_values(&self.map);
         for group in colors.groups() {
             let rounded = parallel::map(group.len(), |k| self.rounded(group[k], cells, &before));

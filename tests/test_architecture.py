@@ -239,7 +239,7 @@ def test_only_the_bridge_imports_authalic() -> None:
     assert {addon_room(file) for file in importing} == {"bridge"}
 
 
-@pytest.mark.parametrize("file", python_files(ADDON), ids=lambda file: str(file.relative_to(ADDON)))
+@pytest.mark.parametrize("file", python_files(ADDON), ids=lambda file: file.relative_to(ADDON).as_posix())
 def test_addon_uses_lower_rooms_only(file: Path) -> None:
     room = addon_room(file)
     assert room in ADDON_RANK, f"the new room {room} needs its place in ADDON_ROOMS"
@@ -267,7 +267,7 @@ def test_ui_touches_no_arrays() -> None:
         assert "numpy" not in absolute_imports(file), file
 
 
-@pytest.mark.parametrize("house", PYTHON_HOUSES, ids=lambda house: str(house.relative_to(ROOT)))
+@pytest.mark.parametrize("house", PYTHON_HOUSES, ids=lambda house: house.relative_to(ROOT).as_posix())
 def test_no_circle_of_python_files(house: Path) -> None:
     files = python_files(house)
     arrows = {str(file): {str(imported) for imported in files_imported(file, house)} for file in files}
@@ -289,8 +289,8 @@ def test_circles_are_seen(tmp_path: Path) -> None:
         (tmp_path / name).write_text(source)
     files = python_files(tmp_path)
     arrows = {
-        str(file.relative_to(tmp_path)): {
-            str(imported.relative_to(tmp_path)) for imported in files_imported(file, tmp_path)
+        file.relative_to(tmp_path).as_posix(): {
+            imported.relative_to(tmp_path).as_posix() for imported in files_imported(file, tmp_path)
         }
         for file in files
     }
@@ -342,7 +342,7 @@ def test_rust_arrows_lead_to_where_a_name_is_defined(made_up_crate: Path) -> Non
 def test_circles_of_rust_files_are_seen(made_up_crate: Path) -> None:
     circle = made_up_crate / "shapes" / "circle.rs"
     assert circles(Crate(made_up_crate).arrows()) == []
-    circle.write_text(circle.read_text() + "fn grown() { crate::Square; }\n")
+    circle.write_text(circle.read_text(encoding="utf-8") + "fn grown() { crate::Square; }\n")
     assert circles(Crate(made_up_crate).arrows()) == ["shapes::circle", "shapes::square"]
 
 
@@ -360,6 +360,29 @@ def test_upward_rust_arrows_are_seen(made_up_crate: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    "file",
+    [
+        *(file for house in (*PYTHON_HOUSES, ROOT / "tests") for file in python_files(house)),
+        *(file for file in sorted((ROOT / "scripts").iterdir()) if file.is_file() and not file.suffix),
+    ],
+    ids=lambda file: file.relative_to(ROOT).as_posix(),
+)
+def test_files_mean_the_same_on_windows(file: Path) -> None:
+    """Its paths have backslashes as texts, and its files are read in another encoding than UTF-8."""
+    calls = [node for node in ast.walk(ast.parse(file.read_text("utf-8"))) if isinstance(node, ast.Call)]
+    for call in calls:
+        inner = call.args[0] if call.args and isinstance(call.args[0], ast.Call) else call
+        texts = isinstance(call.func, ast.Name) and call.func.id == "str"
+        assert not (texts and method(inner) == "relative_to"), f"line {call.lineno}: as_posix()"
+        assert method(call) != "read_text" or call.args or call.keywords, f"line {call.lineno}: encoding"
+
+
+def method(call: ast.Call) -> str | None:
+    """The name of the method that is called."""
+    return call.func.attr if isinstance(call.func, ast.Attribute) else None
+
+
 def class_names(node: ast.ClassDef) -> set[str]:
     """The names that the body of a class binds."""
     names = {part.name for part in node.body if isinstance(part, ast.FunctionDef | ast.ClassDef)}
@@ -371,7 +394,7 @@ def class_names(node: ast.ClassDef) -> set[str]:
     return names
 
 
-@pytest.mark.parametrize("file", python_files(ADDON), ids=lambda file: str(file.relative_to(ADDON)))
+@pytest.mark.parametrize("file", python_files(ADDON), ids=lambda file: file.relative_to(ADDON).as_posix())
 def test_properties_use_no_name_of_their_class(file: Path) -> None:
     """Python 3.14 evaluates annotations late, and finds methods before what the file imports."""
     classes = [

@@ -24,7 +24,7 @@ MADE = (".venv/", "dist/", "out/")
 
 
 def relative(path: Path) -> str:
-    return str(path.relative_to(ROOT))
+    return path.relative_to(ROOT).as_posix()
 
 
 documents = pytest.mark.parametrize("document", DOCUMENTS, ids=relative)

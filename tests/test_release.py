@@ -42,7 +42,7 @@ def project(monkeypatch, tmp_path):
 
 
 def replace(path: Path, old: str, new: str) -> None:
-    text = path.read_text()
+    text = path.read_text(encoding="utf-8")
     assert old in text
     path.write_text(text.replace(old, new))
 
@@ -152,6 +152,24 @@ def test_a_wheel_needs_no_newer_system_than_its_name_says(policy, tag, is_kept):
 )
 def test_wheels_are_for_platforms_of_blender(tag, name):
     assert distribution.platform_of(Path(f"authalic-1.2.3-{tag}.whl")) == name
+
+
+@pytest.mark.parametrize(
+    ("found", "machine", "name"),
+    [
+        ("linux-x86_64", "x86_64", "linux-x64"),
+        ("linux-aarch64", "aarch64", "linux-arm64"),
+        ("macosx-10.13-universal2", "arm64", "macos-arm64"),
+        ("macosx-10.13-universal2", "x86_64", "macos-x64"),
+        ("macosx-14.0-arm64", "arm64", "macos-arm64"),
+        ("win-amd64", "AMD64", "windows-x64"),
+        ("win-arm64", "ARM64", "windows-arm64"),
+    ],
+)
+def test_every_machine_that_has_wheels_has_a_platform(monkeypatch, found, machine, name):
+    monkeypatch.setattr(distribution.sysconfig, "get_platform", lambda: found)
+    monkeypatch.setattr(distribution.this_machine, "machine", lambda: machine)
+    assert distribution.platform() == name
 
 
 def test_this_machine_has_a_platform():
@@ -278,21 +296,25 @@ def test_the_index_agrees_with_the_zips_beside_it(built):
     not any(shell.VENVS.glob("bpy-5/lib")), reason="Blender's tool for extensions is in .venv/bpy-5"
 )
 def test_each_platform_has_a_zip_that_blender_finds_in_the_index(built, monkeypatch, tmp_path):
-    """Wheels of three platforms and one without Blender; the tool of Blender validates and installs."""
+    """Wheels of all platforms and one without Blender; the tool of Blender validates and installs."""
     monkeypatch.setattr(places, "WORK", tmp_path / "work")
     monkeypatch.setattr(distribution, "OUT", tmp_path / "out")
     monkeypatch.setattr(extensions, "recompressed", lambda archive, *_: archive)
     wheel, _ = built
-    for tag in ("macosx_11_0_arm64", "win_arm64", "musllinux_1_2_x86_64"):
+    tags = {
+        **{"linux-arm64": "manylinux_2_28_aarch64", "linux-x64": "manylinux_2_28_x86_64"},
+        **{"macos-arm64": "macosx_11_0_arm64", "macos-x64": "macosx_11_0_x86_64"},
+        **{"windows-arm64": "win_arm64", "windows-x64": "win_amd64"},
+    }
+    assert {*tags, "musl-x64"} == platforms.PLATFORMS.keys()
+    for tag in (*tags.values(), "musllinux_1_2_x86_64"):
         wheel.with_name(wheel.name.replace("manylinux_2_28_x86_64", tag)).write_bytes(wheel.read_bytes())
     wheel.with_name(wheel.name.replace("cp311-abi3", "cp314-cp314t")).write_bytes(b"")
-    names = [
-        f"authalic-{shell.version()}-{name}.zip" for name in ("linux-x64", "macos-arm64", "windows-arm64")
-    ]
+    names = [f"authalic-{shell.version()}-{name}.zip" for name in tags]
     assert [path.name for path in extensions.pack()] == names
     extensions.pack_again()
     rows = json.loads(extensions.index().read_text(encoding="utf-8"))["data"]
-    assert sorted(row["platforms"] for row in rows) == [["linux-x64"], ["macos-arm64"], ["windows-arm64"]]
+    assert sorted(row["platforms"] for row in rows) == [[name] for name in tags]
 
 
 def test_the_licenses_are_those_of_the_crates_that_are_compiled():

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import platform as this_machine
 import re
 import shutil
 import sysconfig
@@ -45,6 +46,8 @@ _UTC = {"TZ": "UTC0"}
 def platform() -> str:
     """Blender's name of this machine's platform, e.g. "linux-x64"."""
     tag = sysconfig.get_platform().replace("-", "_")
+    # The Python of python.org runs on both processors of Macs, and names neither.
+    tag = re.sub(r"universal2$", this_machine.machine(), tag)
     return _platform_of_tag(tag) or tag
 
 
@@ -61,7 +64,7 @@ def build_wheel(dev: Environment, portable: bool = False, log: Path | None = Non
     stamp = folder / "wheel.stamp"
     wanted = content_hash(files_below(*WHEEL_SOURCES), *(PORTABLE if portable else ()))
     wheel = _keep_newest_wheel(folder)
-    if wheel is None or not stamp.exists() or stamp.read_text() != wanted:
+    if wheel is None or not stamp.exists() or stamp.read_text(encoding="utf-8") != wanted:
         _maturin(dev, folder, PORTABLE if portable else (), log)
         wheel = _keep_newest_wheel(folder)
         stamp.write_text(wanted)
@@ -78,7 +81,7 @@ def build_zip(wheel: Path, blender: Environment, log: Path | None = None) -> Pat
     target = DIST / f"authalic-{version()}-{platform()}.zip"
     stamp = DIST / "extension.stamp"
     wanted = content_hash([*files_below(*EXTENSION_SOURCES), wheel])
-    if not target.exists() or not stamp.exists() or stamp.read_text() != wanted:
+    if not target.exists() or not stamp.exists() or stamp.read_text(encoding="utf-8") != wanted:
         stamp.unlink(missing_ok=True)
         for old in DIST.glob("authalic-*.zip"):
             old.unlink()
@@ -125,7 +128,7 @@ def install_wheel(wheel: Path, target: Environment, log: Path | None = None) -> 
     """Installs the wheel into an environment unless it is installed there already."""
     stamp = target.folder / "authalic.stamp"
     wanted = content_hash([wheel])
-    if not stamp.exists() or stamp.read_text() != wanted:
+    if not stamp.exists() or stamp.read_text(encoding="utf-8") != wanted:
         pip = [target.python, "-m", "pip", "--disable-pip-version-check"]
         run([*pip, "install", "--quiet", "--no-deps", "--force-reinstall", wheel], log=log)
         stamp.write_text(wanted)
@@ -144,7 +147,7 @@ def fresh_profile(archive: Path, profile: Path) -> dict[str, str]:
 
 def announce(path: Path) -> None:
     """One line about a file that was written."""
-    say(f"{path.relative_to(ROOT)}  ({path.stat().st_size / 1e6:.1f} MB)")
+    say(f"{path.relative_to(ROOT).as_posix()}  ({path.stat().st_size / 1e6:.1f} MB)")
 
 
 def _maturin(dev: Environment, folder: Path, options: tuple[str, ...], log: Path | None) -> None:

@@ -156,7 +156,7 @@ def _with_constraints(path: Path) -> list[Path]:
 
 
 def _read(path: Path) -> str:
-    return path.read_text() if path.exists() else ""
+    return path.read_text(encoding="utf-8") if path.exists() else ""
 
 
 @contextlib.contextmanager

@@ -125,8 +125,8 @@ def content_hash(paths: Iterable[Path], *extra: str) -> str:
     """A hash of the names and contents of files, and of further strings."""
     digest = hashlib.sha256()
     for path in paths:
-        name = path.relative_to(ROOT) if ROOT in path.parents else path.name
-        digest.update(str(name).encode() + b"\0" + path.read_bytes() + b"\0")
+        name = path.relative_to(ROOT).as_posix() if ROOT in path.parents else path.name
+        digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
     for text in extra:
         digest.update(text.encode() + b"\0")
     return digest.hexdigest()

@@ -232,7 +232,7 @@ def test_the_package_has_the_names_of_the_contract_and_is_typed():
 
 
 def test_the_version_is_that_of_the_workspace():
-    manifest = tomllib.loads((meshes.ROOT / "Cargo.toml").read_text())
+    manifest = tomllib.loads((meshes.ROOT / "Cargo.toml").read_text(encoding="utf-8"))
     assert authalic.__version__ == manifest["workspace"]["package"]["version"]
 
 

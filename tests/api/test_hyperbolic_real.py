@@ -24,7 +24,7 @@ OTHER_WAY_ROUND = (0, 4)
 
 def sulci(side):
     """The twelve curves of the left or the mirrored right cortex."""
-    stored = json.loads(real_meshes.file("brain/fsaverage5_curves.json").read_text())
+    stored = json.loads(real_meshes.file("brain/fsaverage5_curves.json").read_text(encoding="utf-8"))
     return [np.array(path) for path in stored[side]]
 
 

@@ -190,7 +190,7 @@ def test_it_can_be_cancelled():
 
 def test_a_brain():
     path = real_meshes.file("brain/fsaverage5_left_10242.npz")
-    curves = json.loads((path.parent / "fsaverage5_curves.json").read_text())["left"]
+    curves = json.loads((path.parent / "fsaverage5_curves.json").read_text(encoding="utf-8"))["left"]
     with np.load(path) as file:
         vertices, faces = file["V_pial"].astype(float), file["F"].astype(np.int64)
     structure = authalic.hyperbolic_structure(vertices, faces, curves=curves)

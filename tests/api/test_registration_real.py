@@ -39,7 +39,7 @@ def surface(name, field="V", mirror=False):
 
 def fsaverage5(field, points):
     """Left onto mirrored right, with the named points of the twelve curves."""
-    curves = json.loads(real_meshes.file("brain/fsaverage5_curves.json").read_text())
+    curves = json.loads(real_meshes.file("brain/fsaverage5_curves.json").read_text(encoding="utf-8"))
     (left, left_arrays), (right, right_arrays) = (
         surface(f"brain/fsaverage5_{side}_10242.npz", field, mirror)
         for side, mirror in (("left", False), ("right", True))

@@ -58,7 +58,7 @@ def test_soft_landmarks_keep_their_weights(heads: tuple[MeshObject, MeshObject],
         landmark.is_soft, landmark.weight = is_soft, weight
     path = tmp_path / "pairs.json"
     bpy.ops.authalic.landmark_export(filepath=str(path))
-    written = [pair.get("weight") for pair in json.loads(path.read_text())["pairs"]]
+    written = [pair.get("weight") for pair in json.loads(path.read_text(encoding="utf-8"))["pairs"]]
     assert written == [0.3, None, 123.456]
     bpy.ops.authalic.landmark_clear()
     bpy.ops.authalic.landmark_import(filepath=str(path))
@@ -92,7 +92,7 @@ def test_export_leaves_out_what_is_lost(heads: tuple[MeshObject, MeshObject], tm
     pairing.in_edit_mode(heads[0], 20, do=lambda: bpy.ops.mesh.delete(type="VERT"))
     path = tmp_path / "pairs.json"
     bpy.ops.authalic.landmark_export(filepath=str(path))
-    assert [pair["source"] for pair in json.loads(path.read_text())["pairs"]] == [20]
+    assert [pair["source"] for pair in json.loads(path.read_text(encoding="utf-8"))["pairs"]] == [20]
 
 
 GOOD = {"format": "authalic-landmarks", "version": 1, "source": "Head A", "target": "Head B"}

@@ -59,7 +59,7 @@ def _named(name: str) -> list[str]:
     names = []
     for task in TASKS.iterdir():
         with contextlib.suppress(FileNotFoundError):  # it has ended meanwhile
-            names.append((task / "comm").read_text())
+            names.append((task / "comm").read_text(encoding="utf-8"))
     return [each for each in names if each.startswith(name)]
 
 

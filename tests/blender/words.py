@@ -84,7 +84,7 @@ def _of_sources() -> Iterator[tuple[str, str, str]]:
     for file in sorted(folder.rglob("*.py")):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call):
-                where = f"{file.relative_to(folder)}:{node.lineno}"
+                where = f"{file.relative_to(folder).as_posix()}:{node.lineno}"
                 yield from ((_context(node), text, where) for text in _texts(node))
 
 

@@ -72,4 +72,4 @@ def _hear_interrupts():
 
 def names(folder: Path):
     """All files in a folder and below."""
-    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())

@@ -90,7 +90,7 @@ def cluster(folder, *options, count=2):
         wait_for(place.exists, scheduler)
         words = ("dask_worker", "--scheduler-file", str(place), "--nthreads", "1", "--no-dashboard", *options)
         workers = [stack.enter_context(running(words, folder)) for _ in range(count)]
-        address = json.loads(place.read_text())["address"]
+        address = json.loads(place.read_text(encoding="utf-8"))["address"]
         if count:
             with distributed.Client(address, set_as_default=False) as client:
                 client.wait_for_workers(count, timeout=60)
@@ -208,7 +208,7 @@ def test_a_batch_whose_scheduler_is_killed_says_so_and_goes_on_elsewhere(folder)
 
 
 def _worker(path):
-    return json.loads(path.read_text())["worker"]
+    return json.loads(path.read_text(encoding="utf-8"))["worker"]
 
 
 TROUBLE = """

@@ -199,7 +199,11 @@ def test_seams_are_written_as_a_table_as_arrays_and_as_lines(run, folder):
         assert run("seams", "torus.obj", name).code == 0
     assert np.array_equal(np.loadtxt("seams.csv", delimiter=",", skiprows=1), expected)
     assert np.array_equal(np.load("seams.npz")["edges"], expected)
-    lines = [line.split()[1:] for line in (folder / "seams.obj").read_text().splitlines() if line[0] == "l"]
+    lines = [
+        line.split()[1:]
+        for line in (folder / "seams.obj").read_text(encoding="utf-8").splitlines()
+        if line[0] == "l"
+    ]
     assert np.array_equal(np.array(lines, int) - 1, expected)
     assert run("seams", "torus.obj", "seams.ply").code == 3
 

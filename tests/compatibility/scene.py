@@ -82,7 +82,7 @@ def installed_libraries() -> list[str]:
     """The native libraries that Blender has unpacked for its extensions."""
     place = PROFILE / "extensions" / ".local"
     found = place.rglob("authalic/_native*")
-    return sorted(str(path.relative_to(place)) for path in found if path.suffix != ".pyi")
+    return sorted(path.relative_to(place).as_posix() for path in found if path.suffix != ".pyi")
 
 
 def balls() -> tuple[MeshObject, MeshObject]:

@@ -238,7 +238,7 @@ def in_process(name, limit):
             return {"error": f"stopped after {limit:g} s"}
         if done.returncode:
             return {"error": (done.stderr.strip().splitlines() or [f"ended with code {done.returncode}"])[-1]}
-        return json.loads(target.read_text())
+        return json.loads(target.read_text(encoding="utf-8"))
 
 
 def large_cells(figures):

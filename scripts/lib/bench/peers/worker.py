@@ -50,7 +50,7 @@ def peak_memory():
     On Linux a process inherits the figure of `getrusage` from its parent; that of /proc starts anew.
     """
     try:
-        status = Path("/proc/self/status").read_text()
+        status = Path("/proc/self/status").read_text(encoding="utf-8")
         return int(status.split("VmHWM:")[1].split()[0]) / 1024
     except (OSError, IndexError):
         unit = 2**20 if sys.platform == "darwin" else 2**10

@@ -32,7 +32,7 @@ COLUMNS = (
 TITLE = f"""\
 # Maps between surfaces
 
-authalic {authalic.__version__}, {machine()}, {{load:.1f}} processes waiting or running at the start.
+authalic {authalic.__version__}, {machine()}, {{load}} processes waiting or running at the start.
 
 *Strain* is (σ₁² + σ₂² + σ₁⁻² + σ₂⁻²)/4 of each source face onto the triangle of its vertices' images, both
 surfaces scaled to one area: 1 is an isometry; median, mean and 95th percentile by area. *Error* is the mean
@@ -46,12 +46,17 @@ eigenfunctions. It takes vertices to vertices and is not one-to-one: faces that 
 have infinite strain."""
 
 
+def _load() -> str:
+    """How many processes want a processor, which Windows does not say."""
+    return f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"
+
+
 def main(arguments=None):
     """Writes the chosen collections, all by default."""
     options = parsed(arguments)
     report = Report(options.target)
     distance = "along edges and midlines" if geodesics.PyGeodesicAlgorithmExact is None else "exact"
-    report.line(TITLE.format(load=os.getloadavg()[0], distance=distance))
+    report.line(TITLE.format(load=_load(), distance=distance))
     records, strains = [], {}
     for collection in pairs.COLLECTIONS:
         if options.parts and collection.part not in options.parts:

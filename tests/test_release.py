@@ -399,16 +399,21 @@ def test_a_wheel_lists_the_crates_of_its_own_platform(built, tmp_path, tag, has,
 
 @pytest.mark.parametrize("job", JOBS)
 def test_actions_are_pinned_by_commit(job):
-    for step in JOBS[job]["steps"]:
+    for step in steps_of(job):
         if "uses" in step:
             assert re.fullmatch(rf"[\w-]+/[\w-]+@{SHA}", step["uses"])
+
+
+def steps_of(job: str) -> list[dict]:
+    """The steps of a job; a job that calls another workflow has none."""
+    return JOBS[job].get("steps", [])
 
 
 def test_an_action_has_one_commit_and_one_version_everywhere():
     lines = {
         line
         for path in ROOT.glob(".github/workflows/*.yml")
-        for line in re.findall(r"uses: (.+)", path.read_text("utf-8"))
+        for line in re.findall(r"uses: (?!\$/)(.+)", path.read_text("utf-8"))
     }
     names = [line.split("@")[0] for line in lines]
     assert len(names) == len(set(names)) and all(re.search(r"# v\d+\.\d+\.\d+$", line) for line in lines)
@@ -416,18 +421,27 @@ def test_an_action_has_one_commit_and_one_version_everywhere():
 
 @pytest.mark.parametrize("job", JOBS)
 def test_jobs_run_commands_of_the_project(job):
-    steps = {step.name for step in STEPS} | {"notes"}
-    for command in [step["run"] for step in JOBS[job]["steps"] if "run" in step]:
+    steps, has_cargo = {step.name for step in STEPS} | {"notes"}, False
+    for command in [step["run"] for step in steps_of(job) if "run" in step]:
+        has_cargo |= command.startswith("rustup toolchain install")
+        assert has_cargo or not re.match("cargo |rustup target", command), command
         for script, word in re.findall(r"(scripts/[\w/.]+)(?: ([\w-]+))?", command):
             assert (ROOT / script).is_file()
             assert script != "scripts/release" or word in steps or word == "--dry-run", command
+            is_without = script == "scripts/lib/system_libraries.py" or word in WITHOUT_CARGO
+            assert has_cargo or is_without, f"{command} needs cargo: install Rust in this job"
+
+
+WITHOUT_CARGO = {"agree", "notes", "try", "zips", "index"}
+"""The steps of scripts/release that call no cargo."""
 
 
 def test_every_platform_has_its_wheel():
     rows = WORKFLOWS["release"]["jobs"]["wheels"]["strategy"]["matrix"]["include"]
     assert [row["platform"] for row in rows] == list(platforms.PLATFORMS)
     rows = WORKFLOWS["release"]["jobs"]["free-threaded"]["strategy"]["matrix"]["include"]
-    assert {row["platform"] for row in rows} <= platforms.PLATFORMS.keys()
+    without = {"musl-x64", "windows-arm64"}  # docs/releasing.md says why
+    assert {row["platform"] for row in rows} == platforms.PLATFORMS.keys() - without
 
 
 def needed(jobs: dict, name: str) -> set[str]:
@@ -444,7 +458,9 @@ def test_only_a_tag_that_agrees_is_published():
     for name in writing:
         assert jobs[name]["if"] == "github.ref_type == 'tag'"
         assert {"agree", "extensions"} <= needed(jobs, name)
-    assert {"agree", "crates", "wheels", "free-threaded"} <= needed(jobs, "publish-package")
+    assert {"agree", "checks", "crates", "wheels", "free-threaded"} <= needed(jobs, "publish-package")
+    assert jobs["checks"]["uses"] == "$/.github/workflows/checks.yml"
+    assert {"pull_request", "workflow_call"} <= WORKFLOWS["checks"][True].keys()  # YAML reads "on" as true
     commands = [
         step.get("run") for step in jobs["agree"]["steps"] if step.get("if") == "github.ref_type == 'tag'"
     ]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """The parts of scripts/ that could go wrong unnoticed."""
 
+import ast
 import json
 import os
 import re
@@ -103,6 +104,39 @@ def test_the_newest_patch_release_is_taken(no_other_pythons):
 def test_a_missing_python_is_named_with_what_to_do(no_other_pythons):
     with pytest.raises(Unavailable, match=r"no Python 3\.98 or 3\.99 .*install python3\.99"):
         pythons.find("3.98", "3.99")
+
+
+LAUNCHERS = sorted(path for path in (ROOT / "scripts").iterdir() if path.is_file() and not path.suffix)
+
+
+@pytest.mark.parametrize("launcher", LAUNCHERS, ids=lambda path: path.name)
+def test_launchers_start_with_an_old_python(launcher):
+    """They look for the Python that they need. This one is the oldest that they are written for."""
+    try:
+        python, _ = pythons.find("3.8")
+    except Unavailable as absence:
+        pytest.skip(str(absence))
+    assert "usage: " in run([python, launcher, "--help"], {"PYTHONDONTWRITEBYTECODE": "1"})
+
+
+@pytest.mark.parametrize(
+    "file",
+    [*LAUNCHERS, *sorted((ROOT / "scripts" / "lib").rglob("*.py"))],
+    ids=lambda path: path.relative_to(ROOT / "scripts").as_posix(),
+)
+def test_what_launchers_import_has_generic_types_in_annotations_alone(file):
+    """Elsewhere `list[int]` is evaluated, which fails before Python 3.9."""
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    places = {"annotation", "returns"}
+    annotations = [getattr(node, place) for node in ast.walk(tree) for place in places & set(node._fields)]
+    lazy = {part for note in annotations if note is not None for part in ast.walk(note)}
+    evaluated = [
+        f"line {node.lineno}: {ast.unparse(node)}"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Subscript) and node not in lazy and isinstance(node.value, ast.Name)
+        if node.value.id in ("dict", "frozenset", "list", "set", "tuple", "type")
+    ]
+    assert evaluated == []
 
 
 def test_cargo_results_are_summed():

@@ -60,7 +60,7 @@ def _list(kind: str) -> Callable[[list[str]], str]:
     def make(lines: list[str]) -> str:
         starts = [re.match(r"(-|\d+\.) ", line) is not None for line in lines]
         numbers = [sum(starts[: index + 1]) for index in range(len(lines))]
-        items = groupby(zip(numbers, lines, strict=True), key=lambda numbered: numbered[0])
+        items = groupby(zip(numbers, lines), key=lambda numbered: numbered[0])
         texts = [" ".join(line.strip() for _, line in item) for _, item in items]
         inner = "".join(f"<li>{_inline(re.sub(r'^(-|[0-9]+[.]) ', '', text))}</li>" for text in texts)
         return f"<{kind}>{inner}</{kind}>"

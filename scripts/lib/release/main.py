@@ -45,6 +45,7 @@ def agree(options: Options, log: Path) -> None:
 
 def make_sdist(options: Options, log: Path) -> None:
     distribution.announce(sources.build(log))
+    sources.build_again(log)
 
 
 def make_wheel(options: Options, log: Path) -> None:
@@ -52,7 +53,7 @@ def make_wheel(options: Options, log: Path) -> None:
 
 
 def make_wheel_again(options: Options, log: Path) -> None:
-    wheels.build_again(options.platform, log)
+    wheels.build_again(options.platform, options.free_threaded, log)
 
 
 def try_wheel(options: Options, log: Path) -> None:
@@ -92,7 +93,7 @@ STEPS = (
     Step("agree", "the version is the same everywhere, and that of the tag", agree),
     Step("licenses", "the licenses of the crates in the wheel are accepted, and listed", check_licenses),
     Step("advisories", "no crate has a known vulnerability", check_advisories),
-    Step("sdist", "the sdist, from a clean copy of the sources", make_sdist),
+    Step("sdist", "the sdist, from a clean copy of the sources; twice: the same bytes", make_sdist),
     Step("wheel", "the wheel of a platform, from the unpacked sdist, without git", make_wheel),
     Step("again", "the wheel a second time: the same bytes", make_wheel_again),
     Step("try", "the wheel, installed in empty environments, maps", try_wheel),
@@ -123,9 +124,9 @@ def _options(words: list[str], doc: str | None) -> Options:
     parser.add_argument("step", nargs="?", choices=[*(step.name for step in STEPS), "notes"], metavar="STEP")
     parser.add_argument("--dry-run", action="store_true", help="all steps that this machine can do")
     parser.add_argument("--tag", help="agree: the tag that is to be released, e.g. v1.2.3")
-    parser.add_argument("--platform", help="wheel: the platform, by default this machine's")
+    parser.add_argument("--platform", help="wheel, again: the platform, by default this machine's")
     parser.add_argument(
-        "--free-threaded", action="store_true", help="wheel, try: for Python without a global lock"
+        "--free-threaded", action="store_true", help="wheel, again, try: for Python without a global lock"
     )
     parser.add_argument("--write", action="store_true", help="licenses: write the file anew")
     options = parser.parse_args(words)

@@ -11,11 +11,11 @@ import hashlib
 import json
 import zipfile
 from pathlib import Path
-from typing import Any
+from typing import Any, Set, Tuple
 
 from release import notices
 
-Crates = set[tuple[str, str]]
+Crates = Set[Tuple[str, str]]
 """Names and versions."""
 _SBOM = ".dist-info/sboms/"
 _RECORD = ".dist-info/RECORD"

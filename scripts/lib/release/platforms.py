@@ -34,8 +34,8 @@ PLATFORMS = {
     ),
     "macos-arm64": Platform("aarch64-apple-darwin", ("--target", "aarch64-apple-darwin"), _OLDEST_MACOS),
     "macos-x64": Platform("x86_64-apple-darwin", ("--target", "x86_64-apple-darwin"), _OLDEST_MACOS),
-    "windows-x64": Platform("x86_64-pc-windows-msvc", ()),
-    "windows-arm64": Platform("aarch64-pc-windows-msvc", ()),
+    "windows-x64": Platform("x86_64-pc-windows-msvc", ("--target", "x86_64-pc-windows-msvc")),
+    "windows-arm64": Platform("aarch64-pc-windows-msvc", ("--target", "aarch64-pc-windows-msvc")),
 }
 """By Blender's names, except for the Linux without glibc, where there is no Blender."""
 FREE_THREADED = "3.14t"

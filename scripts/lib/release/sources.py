@@ -11,6 +11,7 @@ from pathlib import Path
 import changelog
 import environment
 from release import places
+from release.problems import refuse_any
 from shell import ROOT, run, version
 
 # What commands leave among the sources, where there is no git to ask.
@@ -19,13 +20,16 @@ _LEFT_BEHIND = (".git", ".venv", "target", "dist", "out", "__pycache__", ".*_cac
 
 def build(log: Path | None = None) -> Path:
     """The sdist in dist/release/, from a copy of the sources without anything that commands left in them."""
-    copy = places.WORK / "sources"
-    _copy_sources(copy)
-    places.FILES.mkdir(parents=True, exist_ok=True)
-    maturin = [environment.build().python, "-m", "maturin", "sdist", "--manifest-path"]
-    variables = {"SOURCE_DATE_EPOCH": changelog.source_date_epoch()}
-    run([*maturin, copy / "rust/python/Cargo.toml", "--out", places.FILES], variables, log)
+    _build(places.FILES, log)
     return places.sdist()
+
+
+def build_again(log: Path | None = None) -> None:
+    """Builds the sdist a second time, from a new copy of the sources, and compares the bytes."""
+    first, folder = places.sdist(), places.WORK / "again"
+    _build(folder, log)
+    is_same = (folder / first.name).read_bytes() == first.read_bytes()
+    refuse_any([] if is_same else [f"two builds of {first.name} differ; both are kept"])
 
 
 def unpack(folder: Path) -> Path:
@@ -35,6 +39,15 @@ def unpack(folder: Path) -> Path:
     with tarfile.open(str(places.sdist())) as archive:
         archive.extractall(str(folder))
     return folder / f"authalic-{version()}"
+
+
+def _build(folder: Path, log: Path | None) -> None:
+    copy = places.WORK / "sources"
+    _copy_sources(copy)
+    folder.mkdir(parents=True, exist_ok=True)
+    maturin = [environment.build().python, "-m", "maturin", "sdist", "--manifest-path"]
+    variables = {"SOURCE_DATE_EPOCH": changelog.source_date_epoch()}
+    run([*maturin, copy / "rust/python/Cargo.toml", "--out", folder], variables, log)
 
 
 def _copy_sources(target: Path) -> None:

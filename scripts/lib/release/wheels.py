@@ -24,10 +24,10 @@ def build(platform: str | None = None, free_threaded: bool = False, log: Path | 
     return _build(named(platform), free_threaded, places.FILES, log)
 
 
-def build_again(platform: str | None = None, log: Path | None = None) -> None:
-    """Builds the wheel a second time, in the same place from nothing, and compares the bytes."""
+def build_again(platform: str | None = None, free_threaded: bool = False, log: Path | None = None) -> None:
+    """Builds a wheel a second time, in the same place from nothing, and compares the bytes."""
     first = {path.name: digest(path) for path in places.wheels()}
-    wheel = _build(named(platform), False, places.WORK / "again", log)
+    wheel = _build(named(platform), free_threaded, places.WORK / "again", log)
     if wheel.name not in first:
         raise Unavailable(f"{wheel.name} has not been built before: run `scripts/release wheel`")
     if digest(wheel) != first[wheel.name]:

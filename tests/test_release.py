@@ -5,6 +5,7 @@ import hashlib
 import json
 import os
 import re
+import struct
 import zipfile
 from pathlib import Path
 
@@ -15,7 +16,17 @@ import changelog
 import distribution
 import pythons
 import shell
-from release import agreement, extensions, inspection, notices, own_crates, places, platforms
+from environment import Environment
+from release import (
+    agreement,
+    extensions,
+    inspection,
+    libraries,
+    notices,
+    own_crates,
+    places,
+    platforms,
+)
 from release.main import STEPS, _verdict
 from shell import ROOT, Unavailable
 
@@ -133,6 +144,75 @@ def test_what_was_not_done_fails_but_in_a_rehearsal(outcomes, alone, rehearsed):
 )
 def test_a_wheel_needs_no_newer_system_than_its_name_says(policy, tag, is_kept):
     assert inspection.is_promised(policy, f"authalic-1.2.3-cp311-abi3-{tag}.whl") == is_kept
+
+
+def mach_o(*commands: tuple[int, bytes]) -> bytes:
+    """A made-up library of macOS with load commands: what each is, and what follows its size."""
+    parts = [struct.pack("<2I", kind, 8 + len(rest)) + rest for kind, rest in commands]
+    size = sum(map(len, parts))
+    return struct.pack("<8I", 0xFEEDFACF, 0x0100000C, 0, 6, len(parts), size, 0, 0) + b"".join(parts)
+
+
+def build_version(major: int, minor: int, sdk: int = 26) -> tuple[int, bytes]:
+    """LC_BUILD_VERSION: platform, oldest macOS, SDK, no tools."""
+    return 0x32, struct.pack("<4I", 1, major << 16 | minor << 8, sdk << 16, 0)
+
+
+def loads(path: bytes) -> tuple[int, bytes]:
+    """LC_LOAD_DYLIB: where the path begins, a time, two versions, the path."""
+    return 0xC, struct.pack("<4I", 24, 0, 0, 0) + path.ljust(len(path) // 8 * 8 + 8, b"\0")
+
+
+@pytest.mark.parametrize(
+    ("commands", "problem"),
+    [
+        ([build_version(11, 0)], None),
+        ([(0x19, bytes(64)), build_version(10, 12)], None),
+        ([(0x24, struct.pack("<2I", 11 << 16, 15 << 16))], None),
+        ([build_version(11, 0), loads(b"/usr/lib/libSystem.B.dylib")], None),
+        ([build_version(11, 1)], "needs macOS 11.1"),
+        ([build_version(15, 0, sdk=15)], "needs macOS 15.0"),
+        ([(0x24, struct.pack("<2I", 12 << 16, 15 << 16))], "needs macOS 12.0"),
+        ([(0x19, bytes(64))], "does not say which macOS"),
+        (
+            [build_version(11, 0), loads(b"/opt/homebrew/lib/libgomp.1.dylib")],
+            "loads /opt/homebrew/lib/libgomp",
+        ),
+    ],
+)
+def test_a_wheel_for_macos_needs_what_its_name_says(commands, problem):
+    name = "authalic-1.2.3-cp311-abi3-macosx_11_0_arm64.whl"
+    problems = libraries.problems_on_macos(mach_o(*commands), name)
+    assert (problems == []) if problem is None else (len(problems) == 1 and problem in problems[0])
+
+
+def test_what_is_no_library_of_macos_is_none():
+    [problem] = libraries.problems_on_macos(b"\x7fELF".ljust(64), "authalic-macosx_11_0_arm64.whl")
+    assert "does not say which macOS" in problem
+
+
+def test_a_wheel_for_windows_loads_what_everybody_has():
+    good = ["KERNEL32.dll", "ntdll.dll", "VCRUNTIME140.dll", "api-ms-win-crt-math-l1-1-0.dll"]
+    stable, free = "authalic-1.2.3-cp311-abi3-win_amd64.whl", "authalic-1.2.3-cp314-cp314t-win_amd64.whl"
+    assert libraries.problems_on_windows([*good, "python3.dll"], stable) == []
+    assert libraries.problems_on_windows([*good, "python314t.dll"], free) == []
+    for name, library in (
+        *((stable, "python311.dll"), (stable, "libgcc_s_seh-1.dll"), (stable, "VCOMP140.DLL")),
+        *((free, "python3.dll"), (free, "python314.dll"), (free, "msvcp140.dll")),
+    ):
+        [problem] = libraries.problems_on_windows([*good, library], name)
+        assert problem == f"{name} loads {library}"
+
+
+@pytest.mark.skipif(
+    not any(shell.VENVS.glob("release/lib/*/site-packages/pefile.py")), reason="pefile is in .venv/release"
+)
+def test_libraries_of_windows_are_read(monkeypatch, tmp_path):
+    """pip's launchers for scripts on Windows are programs whose libraries are known."""
+    monkeypatch.setattr(places, "WORK", tmp_path)
+    tools = Environment("release", shell.VENVS / "release", "release")
+    [launcher] = tools.folder.glob("lib/*/site-packages/pip/_vendor/distlib/t64.exe")
+    assert inspection.dlls(launcher.read_bytes(), tools) == ["KERNEL32.dll", "SHLWAPI.dll"]
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import zipfile
 from pathlib import Path
 
 import environment
-from release import notices, places, platforms
+from release import libraries, notices, places, platforms
 from release.problems import Refused, refuse_any
 from shell import ROOT, run, version
 
@@ -30,6 +30,7 @@ def inspect(log: Path | None = None) -> None:
     for wheel in places.wheels():
         _audit(wheel, tools, log)
         problems += problems_of_wheel(wheel)
+        problems += _problems_of_libraries(wheel, tools, log)
         problems += problems_of_lists(wheel, _in_sbom(wheel, tools, log))
     refuse_any(problems)
 
@@ -76,6 +77,23 @@ def _audit(wheel: Path, tools: environment.Environment, log: Path | None) -> Non
         if policy is None or not is_promised(policy[1], wheel.name):
             found = policy[1] if policy else "no tag at all"
             raise Refused([f"{wheel.name} is consistent with {found}, as auditwheel says"])
+
+
+def _problems_of_libraries(wheel: Path, tools: environment.Environment, log: Path | None) -> list[str]:
+    """Why a wheel needs another system than its name says, on macOS and Windows."""
+    if "-macosx_" in wheel.name:
+        return libraries.problems_on_macos(_native_code(wheel), wheel.name)
+    if "-win_" in wheel.name:
+        return libraries.problems_on_windows(dlls(_native_code(wheel), tools, log), wheel.name)
+    return []
+
+
+def dlls(code: bytes, tools: environment.Environment, log: Path | None = None) -> list[str]:
+    """The names of the libraries that a library for Windows loads."""
+    places.WORK.mkdir(parents=True, exist_ok=True)
+    library = places.WORK / "library.dll"
+    library.write_bytes(code)
+    return run([tools.python, ROOT / "scripts/lib/release/read_dll.py", library], log=log).split()
 
 
 def is_promised(policy: str, name: str) -> bool:

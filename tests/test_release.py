@@ -187,8 +187,9 @@ def test_a_wheel_for_macos_needs_what_its_name_says(commands, problem):
 
 
 def test_what_is_no_library_of_macos_is_none():
-    [problem] = libraries.problems_on_macos(b"\x7fELF".ljust(64), "authalic-macosx_11_0_arm64.whl")
-    assert "does not say which macOS" in problem
+    for code in (b"", b"\x7fELF".ljust(64), mach_o()[:30]):
+        [problem] = libraries.problems_on_macos(code, "authalic-1.2.3-cp311-abi3-macosx_11_0_arm64.whl")
+        assert "does not say which macOS" in problem
 
 
 def test_a_wheel_for_windows_loads_what_everybody_has():
@@ -376,7 +377,7 @@ def test_the_index_agrees_with_the_zips_beside_it(built):
     not any(shell.VENVS.glob("bpy-5/lib")), reason="Blender's tool for extensions is in .venv/bpy-5"
 )
 def test_each_platform_has_a_zip_that_blender_finds_in_the_index(built, monkeypatch, tmp_path):
-    """Wheels of all platforms and one without Blender; the tool of Blender validates and installs."""
+    """Wheels of some platforms, with this one, and one without Blender; Blender's tool installs its own."""
     monkeypatch.setattr(places, "WORK", tmp_path / "work")
     monkeypatch.setattr(distribution, "OUT", tmp_path / "out")
     monkeypatch.setattr(extensions, "recompressed", lambda archive, *_: archive)
@@ -387,14 +388,15 @@ def test_each_platform_has_a_zip_that_blender_finds_in_the_index(built, monkeypa
         **{"windows-arm64": "win_arm64", "windows-x64": "win_amd64"},
     }
     assert {*tags, "musl-x64"} == platforms.PLATFORMS.keys()
-    for tag in (*tags.values(), "musllinux_1_2_x86_64"):
+    packed = sorted({"linux-x64", "macos-arm64", "windows-arm64", distribution.platform()})
+    for tag in (*(tags[name] for name in packed), "musllinux_1_2_x86_64"):
         wheel.with_name(wheel.name.replace("manylinux_2_28_x86_64", tag)).write_bytes(wheel.read_bytes())
     wheel.with_name(wheel.name.replace("cp311-abi3", "cp314-cp314t")).write_bytes(b"")
-    names = [f"authalic-{shell.version()}-{name}.zip" for name in tags]
+    names = [f"authalic-{shell.version()}-{name}.zip" for name in packed]
     assert [path.name for path in extensions.pack()] == names
     extensions.pack_again()
     rows = json.loads(extensions.index().read_text(encoding="utf-8"))["data"]
-    assert sorted(row["platforms"] for row in rows) == [[name] for name in tags]
+    assert sorted(row["platforms"] for row in rows) == [[name] for name in packed]
 
 
 def test_the_licenses_are_those_of_the_crates_that_are_compiled():

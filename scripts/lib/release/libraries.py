@@ -8,7 +8,7 @@ import struct
 from typing import Iterator, Sequence
 
 # The header and the commands of a 64-bit Mach-O file, in the order of the bytes of all Macs that there are.
-_MACH_O = 0xFEEDFACF
+_MACH_O = b"\xcf\xfa\xed\xfe"
 _LOAD_DYLIB, _LOAD_WEAK_DYLIB = 0xC, 0x80000018
 _VERSION_MIN_MACOSX, _BUILD_VERSION = 0x24, 0x32
 _OF_MACOS = ("/usr/lib/", "/System/Library/")
@@ -51,10 +51,9 @@ def problems_on_windows(libraries: Sequence[str], name: str) -> list[str]:
 
 def _commands(code: bytes) -> Iterator[tuple[int, bytes]]:
     """The load commands of a Mach-O file: what each is, and its bytes."""
-    magic, _, _, _, count = struct.unpack_from("<5I", code)
-    if magic != _MACH_O:
+    if code[:4] != _MACH_O or len(code) < 32:
         return
-    place = 32
+    place, [count] = 32, struct.unpack_from("<I", code, 16)
     for _ in range(count):
         kind, size = struct.unpack_from("<2I", code, place)
         yield kind, code[place : place + size]

@@ -5,9 +5,12 @@ import copy
 import hashlib
 import json
 import multiprocessing
+import os
 import pickle
+import struct
 import subprocess
 import sys
+import zipfile
 
 import numpy as np
 import pytest
@@ -359,6 +362,102 @@ def test_damaged_files_are_refused_by_their_names(tmp_path):
             assert "damaged.npz" in str(refusal)
         else:
             raise AssertionError(f"loaded {loaded!r} from the table {table}")
+
+
+def zip_with(content, place, value, in_names_too=None):
+    """An archive with a field of two bytes changed for all entries, in its list and in front of them."""
+    changed = bytearray(content)
+    for mark, offset in ((b"PK\x01\x02", place), (b"PK\x03\x04", in_names_too)):
+        start = changed.find(mark)
+        while start >= 0 and offset is not None:
+            changed[start + offset : start + offset + 2] = value.to_bytes(2, "little")
+            start = changed.find(mark, start + 4)
+    return bytes(changed)
+
+
+# The place of a field in the list of entries, its value, and its place in front of each entry.
+ZIP_FIELDS = {
+    "unknown method": (10, 99, 8),
+    "broken bzip2": (10, 12, 8),
+    "broken lzma": (10, 14, 8),
+    "encrypted": (8, 1, None),
+    "patched": (8, 0x20, None),
+    "strong encryption": (8, 0x40, None),
+    "version": (6, 99, None),
+}
+
+
+@pytest.mark.parametrize("field", ZIP_FIELDS)
+def test_archives_with_changed_fields_are_refused(field, tmp_path):
+    authalic.sphere_map(*meshes.ball(2)).save(tmp_path / "a.npz")
+    path = tmp_path / "changed.npz"
+    path.write_bytes(zip_with((tmp_path / "a.npz").read_bytes(), *ZIP_FIELDS[field]))
+    with pytest.raises(ValueError, match=r"changed\.npz is (damaged|no result of authalic): \w"):
+        authalic.load(path)
+
+
+def npy(shape, kind="<f8"):
+    head = str({"descr": kind, "fortran_order": False, "shape": shape}).ljust(117) + "\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode()
+
+
+def test_arrays_without_memory_are_refused_by_their_size(tmp_path):
+    for head in (npy((10**15,)), npy((10**30,)), npy((), "|V2000000000")):
+        (tmp_path / "one.npz").write_bytes(head)
+        with zipfile.ZipFile(tmp_path / "entry.npz", "w") as archive:
+            archive.writestr("authalic.npy", head)
+        for name in ("one.npz", "entry.npz"):
+            with pytest.raises(ValueError, match=name):
+                authalic.load(tmp_path / name)
+    (tmp_path / "one.npz").write_bytes(npy((10**15,)))
+    with pytest.raises(ValueError, match=r"not enough memory .*1000000000000000,"):
+        authalic.load(tmp_path / "one.npz")
+
+
+def test_the_format_of_a_result_is_a_number(tmp_path):
+    path = tmp_path / "a.npz"
+    for number in ("1e400", "NaN", "-5", "0", "true", '"1"', "[1]", "9" * 5000):
+        table = f'{{"format": {number}, "version": "1", "content": {{}}}}'
+        np.savez(path, authalic=np.array(table))
+        with pytest.raises(ValueError, match=r"a\.npz is damaged: \w"):
+            authalic.load(path)
+
+
+def test_messages_quote_little_of_a_file(tmp_path):
+    kind = {"kind": "x" * 10**6, "state": {}, "provenance": {}}
+    tables = [{"format": 99, "version": "x" * 10**6, "content": 0}]
+    tables += [{"format": 99, "version": "\x1b[2J", "content": 0}]
+    tables += [{"format": 1, "version": "1", "content": kind}]
+    for table in tables:
+        np.savez(tmp_path / "a.npz", authalic=np.array(json.dumps(table)))
+        with pytest.raises(ValueError) as caught:
+            authalic.load(tmp_path / "a.npz")
+        said = str(caught.value).removeprefix(str(tmp_path))
+        assert len(said) < 600 and said.isprintable()
+
+
+def test_no_message_advises_to_load_pickles(tmp_path):
+    (tmp_path / "a.npz").write_bytes(pickle.dumps([1]))
+    np.savez(tmp_path / "b.npz", authalic=np.array([{}], dtype=object))
+    for name in ("a.npz", "b.npz"):
+        with pytest.raises(ValueError, match="never read") as caught:
+            authalic.load(tmp_path / name)
+        assert "allow_pickle" not in str(caught.value)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs pipes")
+def test_pipes_and_devices_are_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "a.npz")
+    for path in (tmp_path / "a.npz", "/dev/zero"):
+        with pytest.raises(ValueError, match="a device or a pipe"):
+            authalic.load(path)
+
+
+def test_files_that_cannot_be_opened_are_errors_of_the_system(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        authalic.load(tmp_path / "nothing.npz")
+    with pytest.raises(OSError):
+        authalic.load(tmp_path)
 
 
 def test_what_is_no_result_is_refused(tmp_path):

@@ -133,6 +133,22 @@ def test_errors_name_what_the_command_calls_things(run, folder):
     assert "--repair" in run("sphere", "apart.stl", "--json").error["message"]
 
 
+def test_a_damaged_result_is_an_error_of_its_file(run, folder):
+    for table, said in (
+        ('{"format": 1e400, "version": "1", "content": {}}', "info.npz: it is damaged: "),
+        (
+            '{"format": 1, "version": "1", "content": {"kind": "x", "provenance": 3}}',
+            "info.npz: it is damaged",
+        ),
+        ('{"format": 9, "version": "7.0", "content": {}}', "info.npz: it was saved by authalic 7.0"),
+    ):
+        np.savez(folder / "info.npz", authalic=np.array(table))
+        result = run("info", "info.npz")
+        assert result.code == 3 and said in result.err
+    np.savez(folder / "info.npz", a=np.zeros(3))
+    assert "it lacks the arrays" in run("info", "info.npz").err
+
+
 def test_wrong_words_are_data_too_with_json(run):
     error = run("sphere", "nothing.obj", "--json").error
     assert (error["kind"], error["exit_code"]) == ("usage", 2) and "nothing.obj" in error["message"]

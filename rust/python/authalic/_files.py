@@ -7,24 +7,21 @@ numbers as they are, arrays as the names of their entries, results within the re
 
 import json
 import os
-import zlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
 
 import numpy as np
 
 from . import _native, _objects
+from ._reading import check_regular, numpys, short, words
 from ._warnings import RegistrationWarning
 
 FORMAT = 1
 """The format that is written. Formats from 1 up to this one are read."""
 
 _TABLE = "authalic"
-
-# What a file raises whose entries are not those that its table names, or are cut short.
-_DAMAGE = (AttributeError, KeyError, RecursionError, TypeError, ValueError, EOFError, BadZipFile, zlib.error)
 
 Arrays = dict[str, np.ndarray[Any, Any]]
 
@@ -52,7 +49,9 @@ def load(path: str | os.PathLike[str]) -> Any:
     Raises
     ------
     ValueError
-        The file holds no result, a damaged one, or one of a later version.
+        The file holds no result, a damaged one, or one of a later version; or there is no memory for it.
+    OSError
+        The file cannot be opened.
 
     Examples
     --------
@@ -68,8 +67,8 @@ def load(path: str | os.PathLike[str]) -> Any:
         table = _table(entries, path)
         try:
             result = _made(table["content"], entries)
-        except _DAMAGE as problem:
-            raise ValueError(f"{os.fspath(path)} is damaged: {_words(problem)}") from problem
+        except Exception as problem:  # zip files and numpy raise what they like for a damaged file
+            raise _damage(path, problem) from problem
     if not isinstance(result, _native.Result):
         raise ValueError(
             f"{os.fspath(path)} is damaged: it holds {type(result).__name__} in place of a result"
@@ -78,14 +77,26 @@ def load(path: str | os.PathLike[str]) -> Any:
 
 
 def provenance_in(path: str | os.PathLike[str]) -> dict[str, Any] | None:
-    """What the result in a file was computed from; None where the file holds no result."""
+    """What the result in a file was computed from; None where the file holds no result.
+
+    Raises `ValueError` as `load` does where it is a damaged result, or one of a later version.
+    """
     try:
         with _opened(path) as entries:
-            content: dict[str, Any] = _table(entries, path)["content"]
-            provenance: dict[str, Any] = content["provenance"]
-            return {"result": content["kind"]} | provenance
-    except (ValueError, KeyError, TypeError):
+            if _TABLE not in entries:
+                return None
+            content = _table(entries, path)["content"]
+    except _NoResult:
         return None
+    try:
+        provenance: dict[str, Any] = {"result": content["kind"]} | content["provenance"]
+    except (KeyError, TypeError) as problem:
+        raise _damage(path, problem) from problem
+    return provenance
+
+
+class _NoResult(ValueError):
+    """The file is no archive of numpy."""
 
 
 def _described(value: Any, place: str, arrays: Arrays) -> Any:
@@ -127,14 +138,21 @@ def _made(content: Any, entries: Mapping[str, Any]) -> Any:
             return content
 
 
-def _opened(path: str | os.PathLike[str]) -> Any:
-    try:
-        opened = np.load(path, allow_pickle=False)
-    except (ValueError, EOFError, BadZipFile) as problem:
-        raise ValueError(f"{os.fspath(path)} is no result of authalic: {problem}") from problem
-    if not isinstance(opened, np.lib.npyio.NpzFile):
-        raise ValueError(f"{os.fspath(path)} is no result of authalic: it holds one array")
-    return opened
+@contextmanager
+def _opened(path: str | os.PathLike[str]) -> Iterator[Mapping[str, Any]]:
+    """The entries of an archive of numpy, which are read as they are asked for."""
+    name = os.fspath(path)
+    with ExitStack() as stack:
+        try:
+            check_regular(path)
+            entries = stack.enter_context(numpys(path))
+        except OSError:
+            raise
+        except Exception as problem:
+            raise _NoResult(f"{name} is no result of authalic: {words(problem)}") from problem
+        if not isinstance(entries, np.lib.npyio.NpzFile):
+            raise _NoResult(f"{name} is no result of authalic: it holds one array")
+        yield entries
 
 
 def _table(entries: Mapping[str, Any], path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -142,20 +160,21 @@ def _table(entries: Mapping[str, Any], path: str | os.PathLike[str]) -> dict[str
         raise ValueError(f"{os.fspath(path)} is no result of authalic: save results by their method save")
     try:
         table: dict[str, Any] = json.loads(str(entries[_TABLE]))
-        is_newer = int(table["format"]) > FORMAT
-        table["content"], table["version"]
-    except _DAMAGE as problem:
-        raise ValueError(f"{os.fspath(path)} is damaged: {_words(problem)}") from problem
-    if is_newer:
+        format, _, version = table["format"], table["content"], table["version"]
+        if not isinstance(format, int) or isinstance(format, bool) or format < 1:
+            raise ValueError(f"its format is {short(repr(format))}, not a number from 1 on")
+    except Exception as problem:
+        raise _damage(path, problem) from problem
+    if format > FORMAT:
         raise ValueError(
-            f"{os.fspath(path)} was saved by authalic {table['version']} in format {table['format']}, but "
-            f"this version, {_native.__version__}, reads formats up to {FORMAT}: install a newer one"
+            f"{os.fspath(path)} was saved by authalic {short(str(version))} in format {short(str(format))}, "
+            f"but this version, {_native.__version__}, reads formats up to {FORMAT}: install a newer one"
         )
     return table
 
 
-def _words(problem: Exception) -> str:
-    return str(problem) or type(problem).__name__
+def _damage(path: str | os.PathLike[str], problem: Exception) -> ValueError:
+    return ValueError(f"{os.fspath(path)} is damaged: {words(problem)}")
 
 
 def _write(path: Path, arrays: Arrays) -> None:

@@ -2,19 +2,23 @@
 """numpy's files, and text with one row a vertex."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from .._reading import numpys
 from . import strict_json
 from .errors import FileError
 from .mesh import MeshData, Reals
+from .words import check_plain
 
 _TO_SPACES = str.maketrans(",;\t", "   ")
 
 
 def read_mesh(path: Path, name: str) -> MeshData:
     """npz with the arrays `vertices` and `faces`, and where there are UVs `uv` and `uv_faces`."""
-    with np.load(path, allow_pickle=False) as arrays:
+    with numpys(path) as arrays:
+        _check_archive(arrays)
         absent = {"vertices", "faces"} - set(arrays)
         if absent:
             raise ValueError(f"it lacks the arrays {sorted(absent)}; it has {sorted(arrays)}")
@@ -34,7 +38,8 @@ def write_mesh(path: Path, mesh: MeshData, name: str) -> None:
 
 def read_values(path: Path, name: str) -> Reals:
     if name == "npy":
-        return np.asarray(np.load(path, allow_pickle=False), np.float64)
+        with numpys(path) as array:
+            return np.asarray(array, np.float64)
     if name == "npz":
         return _only_array(path)
     return read_table(path)
@@ -58,6 +63,7 @@ def read_table(path: Path) -> Reals:
     for number, line in enumerate(path.read_text(encoding="utf-8-sig").splitlines(), start=1):
         words = line.translate(_TO_SPACES).split()
         try:
+            check_plain(words)
             row = [float(word) for word in words]
         except ValueError as error:
             if not is_first:
@@ -72,8 +78,14 @@ def read_table(path: Path) -> Reals:
     return table[:, 0] if table.ndim == 2 and table.shape[1] == 1 else table
 
 
+def _check_archive(found: Any) -> None:
+    if not isinstance(found, np.lib.npyio.NpzFile):
+        raise ValueError("it holds one array, as npy files do, and is no npz")
+
+
 def _only_array(path: Path) -> Reals:
-    with np.load(path, allow_pickle=False) as arrays:
+    with numpys(path) as arrays:
+        _check_archive(arrays)
         name = "values" if "values" in arrays else next(iter(arrays))
         if name != "values" and len(arrays) > 1:
             raise ValueError(f"it has several arrays and none named values: {sorted(arrays)}")

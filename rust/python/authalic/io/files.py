@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .._reading import check_regular, words
 from .atomic import Outputs
 from .errors import FileError, MissingExtra
 from .formats import Format, mesh_format, value_format
@@ -52,6 +53,8 @@ def read_mesh(path: str | Path, format: str | None = None) -> MeshData:
         raise FileError(path, "the file has no arrays of vertices and triangles")
     if len(mesh.faces) == 0:
         raise FileError(path, "the file has no triangles")
+    if problem := mesh.uv_problem():
+        raise FileError(path, problem)
     return mesh
 
 
@@ -81,6 +84,8 @@ def write_mesh(path: str | Path, mesh: MeshData, format: str | None = None) -> N
     >>> path.exists()
     True
     """
+    if problem := mesh.uv_problem():
+        raise FileError(path, problem)
     with Outputs() as outputs:
         save_mesh(outputs.add(path), mesh, mesh_format(path, format))
 
@@ -161,17 +166,17 @@ def save_values(path: Path, values: Reals, format: Format) -> None:
 def _reading(path: str | Path, format: Format, function: str) -> Any:
     """What a format's function returns, with every fault of the file as FileError."""
     module = importlib.import_module(f".{format.module}", __package__)
-    if Path(path).exists() and not (Path(path).is_file() or Path(path).is_dir()):
-        raise FileError(
-            path, "it is a device or a pipe, which cannot be read twice; copy it into a file first"
-        )
+    if Path(path).exists():
+        try:
+            check_regular(path)
+        except ValueError as error:
+            raise FileError(path, str(error)) from None
     with open(path, "rb") as file:
         if not file.read(1):
             raise FileError(path, "the file is empty")
     try:
         return getattr(module, function)(Path(path), format.name)
-    except (MissingExtra, FileError, MemoryError):
+    except (MissingExtra, FileError):
         raise
     except Exception as error:  # libraries raise what they like for a damaged file
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise FileError(path, f"the file cannot be read as {format.name}: {reason}") from error
+        raise FileError(path, f"the file cannot be read as {format.name}: {words(error)}") from error

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """GIFTI by nibabel: surfaces (.surf.gii) and per-vertex values (.shape.gii)."""
 
+import base64
 import gzip
+import math
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +14,9 @@ from .errors import require
 from .mesh import MeshData, Reals
 
 _POINTS, _TRIANGLES, _SHAPE = "NIFTI_INTENT_POINTSET", "NIFTI_INTENT_TRIANGLE", "NIFTI_INTENT_SHAPE"
+
+_MOST_BYTES, _MOST_TIMES = 2**28, 20
+"""What is packed may unpack to so many bytes, or to so many times its own; surfaces unpack to a few times."""
 
 
 def read_mesh(path: Path, name: str) -> MeshData:
@@ -65,8 +71,60 @@ def _surface_codes() -> set[int]:
 def _load(path: Path) -> Any:
     content = path.read_bytes()
     if content[:2] == b"\x1f\x8b":
-        content = gzip.decompress(content)
-    return _gifti().GiftiImage.from_bytes(content)
+        content = _unpacked(content, zlib.MAX_WBITS | 16, _limit(content), "the file")
+    parser = _bounded_parser()()
+    parser.parse(string=content)
+    return parser.img
+
+
+def _bounded_parser() -> type:
+    """nibabel's parser, which looks at each array before it is unpacked."""
+    parent: Any = _gifti().GiftiImage.parser
+
+    class Parser(parent):  # type: ignore[misc]
+        def flush_chardata(self) -> None:
+            if self.write_to == "Data":
+                _check_array(self.da, self._char_blocks or [])
+            super().flush_chardata()
+
+    return Parser
+
+
+def _check_array(array: Any, pieces: list[str]) -> None:
+    """Refuses numbers in another file, and packed ones that are not as many as the array states."""
+    util = require("nibabel.gifti.util", "GIFTI", "neuro")
+    types = require("nibabel.nifti1", "GIFTI", "neuro").data_type_codes
+    encoding = util.gifti_encoding_codes.label[array.encoding]
+    if encoding == "External":
+        raise ValueError("its numbers are in a file of their own, which is not read")
+    if min(array.dims, default=0) < 0:
+        raise ValueError(f"it states an array of the shape {tuple(array.dims)}")
+    if encoding == "B64GZ":
+        packed = base64.b64decode("".join(pieces).encode("ascii"))
+        expected = math.prod(array.dims) * types.dtype[array.datatype].itemsize
+        if expected > _limit(packed):
+            raise ValueError(f"it states an array of {expected} bytes, packed in {len(packed)}")
+        _unpacked(packed, zlib.MAX_WBITS, expected, f"an array of the shape {tuple(array.dims)}")
+
+
+def _limit(packed: bytes) -> int:
+    return max(_MOST_BYTES, _MOST_TIMES * len(packed))
+
+
+def _unpacked(packed: bytes, kind: int, limit: int, what: str) -> bytes:
+    """What was packed, in one part or more, if it is no longer than a limit."""
+    parts, size = [], 0
+    while packed:
+        unpacker = zlib.decompressobj(kind)
+        part = unpacker.decompress(packed, limit - size + 1)
+        parts.append(part)
+        size += len(part)
+        if size > limit:
+            raise ValueError(f"{what} unpacks to more than {limit} bytes")
+        if not unpacker.eof:
+            raise ValueError(f"{what} is packed and ends early")
+        packed = unpacker.unused_data.lstrip(b"\0")
+    return b"".join(parts)
 
 
 def _save(path: Path, image: Any) -> None:

@@ -69,10 +69,43 @@ class MeshData:
         """
         if self.uv is None or self.uv_faces is None or np.array_equal(self.faces, self.uv_faces):
             return self
+        if problem := self.uv_problem():
+            raise ValueError(problem)
+        if not _are_within(self.faces, len(self.vertices)):
+            raise ValueError(f"faces have corners that are none of the {len(self.vertices)} vertices")
         corners = np.stack([self.faces.ravel(), self.uv_faces.ravel()], axis=1)
         pairs, of_corner = np.unique(corners, axis=0, return_inverse=True)
         faces = of_corner.reshape(-1, 3)
         return MeshData(self.vertices[pairs[:, 0]], faces, self.uv[pairs[:, 1]], faces, self.metadata)
+
+    def uv_problem(self) -> str | None:
+        """What is wrong with the UVs, if anything.
+
+        Returns
+        -------
+        str or None
+            Words on their shapes, or on the first corner whose UV point there is not.
+
+        Examples
+        --------
+        >>> from authalic.io import MeshData
+        >>> vertices, uv = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0]]
+        >>> MeshData(vertices, [[0, 1, 2]], uv, [[0, 0, 8]]).uv_problem()
+        'face 0 has UV point 8 at a corner, but there is 1 UV point, counted from 0'
+        """
+        if self.uv is None or self.uv_faces is None:
+            return None
+        if self.uv.shape[1:] != (2,):
+            return f"its UVs have the shape {self.uv.shape}, but they are pairs of numbers"
+        if self.uv_faces.shape != self.faces.shape:
+            return f"its {len(self.faces)} faces have UVs of the shape {self.uv_faces.shape}"
+        bad = (self.uv_faces < 0) | (self.uv_faces >= len(self.uv))
+        if not bad.any():
+            return None
+        face, corner = np.argwhere(bad)[0]
+        there = "is 1 UV point" if len(self.uv) == 1 else f"are {len(self.uv)} UV points"
+        point = self.uv_faces[face, corner]
+        return f"face {face} has UV point {point} at a corner, but there {there}, counted from 0"
 
 
 _UV_COLUMNS = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"), ("texture_s", "texture_t"))
@@ -89,9 +122,19 @@ def uv_of_columns(columns: Mapping[str, Any]) -> Reals | None:
 def fans(polygons: list[list[int]]) -> Indices:
     """The triangles of polygons, in their order, each a fan around its first corner."""
     triangles = [(p[0], p[k], p[k + 1]) for p in polygons for k in range(1, len(p) - 1)]
-    return np.array(triangles, np.int64).reshape(-1, 3)
+    try:
+        return np.array(triangles, np.int64).reshape(-1, 3)
+    except OverflowError as error:
+        raise ValueError("a corner of a polygon has a number beyond those of any vertex, 2⁶³") from error
 
 
 def _rows(values: ArrayLike, width: int, dtype: type) -> NDArray[Any]:
-    array: NDArray[Any] = np.ascontiguousarray(values, dtype)
+    given = np.asarray(values)
+    if dtype is np.int64 and given.dtype.kind == "f" and not np.all(given % 1 == 0):
+        raise ValueError("the corners of faces are whole numbers, but there are others among them")
+    array: NDArray[Any] = np.ascontiguousarray(given, dtype)
     return array.reshape(-1, width) if array.size == 0 else array
+
+
+def _are_within(indices: Indices, count: int) -> bool:
+    return indices.size == 0 or (int(indices.min()) >= 0 and int(indices.max()) < count)

@@ -11,6 +11,10 @@ import numpy as np
 
 from .errors import FileError
 from .mesh import Indices, MeshData, Reals, fans
+from .words import check_plain
+
+_DIGITS = 20
+"""Indices of more digits are not quoted."""
 
 
 def read_mesh(path: Path, name: str) -> MeshData:
@@ -19,22 +23,30 @@ def read_mesh(path: Path, name: str) -> MeshData:
     uv: list[list[float]] = []
     polygons: list[list[int]] = []
     uv_polygons: list[list[int]] = []
+    numbers: list[int] = []
     with open(path, encoding="utf-8", errors="replace") as file:
         for number, line in enumerate(_joined(file), start=1):
             words = line.split()
             keyword = words[0] if words else ""
             try:
+                if keyword in ("v", "vt"):
+                    check_plain(words[1:4])
                 if keyword == "v":
                     points.append([float(words[k]) for k in (1, 2, 3)])
                 elif keyword == "vt":
-                    uv.append([float(word) for word in (*words[1:3], "0")[:2]])
+                    uv.append([float(word) for word in (words[1], *words[2:3], "0")[:2]])
                 elif keyword == "f":
+                    check_plain(words[1:])
                     polygon, uv_polygon = _corners(words[1:], len(points), len(uv))
                     polygons.append(polygon)
                     uv_polygons.append(uv_polygon)
+                    numbers.append(number)
             except (ValueError, IndexError) as error:
                 raise FileError(path, f"line {number} cannot be read: {line.strip()[:60]!r}") from error
     has_uv = bool(uv) and all(map(len, uv_polygons))
+    _check_range(path, numbers, polygons, len(points), "vertex", "vertices")
+    if has_uv:
+        _check_range(path, numbers, uv_polygons, len(uv), "UV point", "UV points")
     return MeshData(
         np.array(points).reshape(-1, 3),
         fans(polygons),
@@ -85,6 +97,21 @@ def _index(word: str, count: int) -> int:
     if index == 0 or index < -count:
         raise IndexError(f"{index} is no index")
     return index - 1 if index > 0 else count + index
+
+
+def _check_range(
+    path: Path, numbers: list[int], polygons: list[list[int]], count: int, noun: str, nouns: str
+) -> None:
+    """Refuses corners that have no point among `count`; `numbers` are the lines of the polygons."""
+    for number, polygon in zip(numbers, polygons, strict=True):
+        if polygon and max(polygon) >= count:
+            there = f"is 1 {noun}" if count == 1 else f"are {count} {nouns}"
+            raise FileError(path, f"line {number} names {noun} {_short(max(polygon) + 1)}, but there {there}")
+
+
+def _short(number: int) -> str:
+    """A number as a message has it."""
+    return str(number) if number < 10**_DIGITS else f"of more than {_DIGITS} digits"
 
 
 def _real_lines(word: str, rows: Reals) -> list[str]:

@@ -3,17 +3,48 @@
 
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 import numpy as np
 
 from .errors import require
 from .mesh import MeshData, Reals
+from .words import quoted
+
+_TEXT = "model.gltf"
+"""What trimesh looks for where the text of a glTF file cannot be read."""
+
+
+class _Neighbors:
+    """The files that a glTF file names, of which only those beside it are read.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder of the glTF file.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder.resolve()
+
+    def __getitem__(self, name: str) -> bytes:
+        """The content of a file of this name in the folder; a link to a file elsewhere is none."""
+        if name == _TEXT:
+            raise ValueError("it is damaged: it is no JSON")
+        name = unquote(name)
+        if Path(name).name != name or set(name) & set("/\\:\0"):
+            raise ValueError(f"it names the file {quoted(name)}; only files in its own folder are read")
+        file = (self._folder / name).resolve()
+        if not file.is_file() or file.parent != self._folder:
+            raise ValueError(f"it names the file {quoted(name)}, which is not in its folder")
+        return file.read_bytes()
 
 
 def read_mesh(path: Path, name: str) -> MeshData:
     """All triangles of a file. Objects of a scene become one mesh, each where the scene places it."""
     trimesh = require("trimesh", name.upper(), "io")
-    found = trimesh.load_mesh(str(path), file_type=name, process=False)
+    with open(path, "rb") as file:
+        found = trimesh.load_mesh(file, file_type=name, process=False, resolver=_Neighbors(path.parent))
     return MeshData(np.asarray(found.vertices), np.asarray(found.faces), _uv(found))
 
 

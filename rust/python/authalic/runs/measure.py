@@ -2,6 +2,7 @@
 """Figures of any map, from any tool, and what a mesh is like."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -57,9 +58,7 @@ def info_run(source: Path, *, input_format: str | None = None) -> Record:
 
     Of a saved result, what it was computed from.
     """
-    from .._files import provenance_in
-
-    if source.suffix == ".npz" and (provenance := provenance_in(source)) is not None:
+    if (provenance := _provenance(source)) is not None:
         return {"command": "info", "input": str(source), "format": "result"} | provenance
     mesh, record = read_input(source, input_format, "info", {})
     record["format"] = mesh_format(source, input_format).name
@@ -81,6 +80,18 @@ def info_run(source: Path, *, input_format: str | None = None) -> Record:
         "boundary_loops": len(surface.boundary_loops),
         "suits": _suited(surface),
     }
+
+
+def _provenance(source: Path) -> dict[str, Any] | None:
+    """What a saved result was computed from; None for other files."""
+    from .._files import provenance_in
+
+    if source.suffix != ".npz":
+        return None
+    try:
+        return provenance_in(source)
+    except ValueError as error:
+        raise FileError(source, f"it {str(error).removeprefix(f'{source} ')}") from error
 
 
 def _map(

@@ -12,7 +12,7 @@ from test_architecture import ADDON_ROOMS, CORE_ROOMS, HYPERBOLIC_ROOMS
 from shell import version
 
 ROOT = Path(__file__).resolve().parents[1]
-GUIDES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+GUIDES = [ROOT / "README.md", ROOT / "rust" / "python" / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 DOCUMENTS = [
     *GUIDES,
     *(ROOT / "ARCHITECTURE.md", ROOT / "CHANGELOG.md"),

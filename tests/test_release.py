@@ -6,6 +6,7 @@ import json
 import os
 import re
 import struct
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -279,6 +280,7 @@ def built(monkeypatch, tmp_path):
     with zipfile.ZipFile(wheel, "w") as archive:
         archive.writestr("authalic/_native.abi3.so", b"\x7fELF panicked at /authalic/rust/core/src/lib.rs:1")
         archive.writestr("authalic/py.typed", "")
+        archive.writestr(f"{info}/METADATA", "Name: authalic\n\n[anywhere](https://example.org)\n")
         archive.writestr(f"{info}/sboms/authalic-python.cyclonedx.json", "{}")
         for name in ("LICENSE-MIT", "LICENSE-APACHE", notices.NAME):
             archive.writestr(f"{info}/licenses/{name}", name)
@@ -308,7 +310,7 @@ def test_complete_wheels_and_zips_have_no_problems(built):
     assert inspection.problems_of_wheel(wheel) == [] and extensions.problems_of_zip(zipped) == []
 
 
-@pytest.mark.parametrize("name", ["LICENSE-MIT", notices.NAME, "py.typed", "sboms"])
+@pytest.mark.parametrize("name", ["LICENSE-MIT", notices.NAME, "py.typed", "sboms", "METADATA"])
 def test_a_wheel_must_have_its_licenses_its_types_and_its_crates(built, name):
     [problem] = inspection.problems_of_wheel(rewritten(built[0], without=name))
     assert name in problem or "SBOM" in problem
@@ -321,6 +323,29 @@ def test_a_wheel_must_name_no_folder_of_the_machine_that_built_it(built, path):
     wheel = rewritten(built[0], without="_native", **{"authalic___native.abi3.so": b"panicked at " + path})
     [problem] = inspection.problems_of_wheel(wheel)
     assert path.decode() in problem
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[the manual](docs/blender.md)",
+        "![a badge](badge.svg)",
+        '<img src="docs/a.jpg">',
+        "[home]: ../README.md",
+    ],
+)
+def test_a_description_must_lead_to_no_file_beside_it(built, text):
+    metadata = f"authalic-{shell.version()}.dist-info/METADATA"
+    wheel = rewritten(built[0], without="METADATA", **{metadata.replace("/", "__"): text.encode()})
+    [problem] = inspection.problems_of_wheel(wheel)
+    assert "the description of" in problem
+
+
+def test_what_registries_show_leads_to_no_file_beside_it():
+    package = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["readme"]
+    for readme in (ROOT / package, ROOT / "rust" / "core" / "README.md"):
+        assert inspection.relative_targets(readme.read_text(encoding="utf-8")) == []
+    assert inspection.relative_targets((ROOT / "README.md").read_text(encoding="utf-8"))
 
 
 def test_a_wheel_must_hold_nothing_under_another_license(built):

@@ -25,6 +25,8 @@ BLENDERS = ("4.2", "4.5", "5.0", "5.1", "5.2", "5.3")
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 _PARTS = ("test_1_before.py", "test_2_update.py", "test_3_restart.py", "test_4_after.py")
 _FOLDER = "tests/compatibility"
+_SITE = "authalic_site"
+"""What Blender calls the remote repository from which version 0.1.0 is updated too."""
 # numpy by name of the requirements; the oldest has no wheels for Python 3.13 and newer.
 _NUMPYS = {"oldest": "numpy-1.26", "newest": "numpy-2"}
 _ONLY_NEWEST = ("3.13", "3.14")
@@ -71,6 +73,10 @@ def check_blenders(only: Sequence[str], wheel: Path, folder: Path, is_brief: boo
             log = folder / f"blender-{name}-{commit}.log"
             what = f"update from {PREVIOUS} ({commit})"
             rows.append(_row(f"Blender {name}", what, _update, name, archive, old, log))
+        commit, old = list(previous.items())[-1]
+        what = f"the same from {commit} by a remote repository"
+        log = folder / f"blender-{name}-repository.log"
+        rows.append(_row(f"Blender {name}", what, _update, name, archive, old, log, _SITE))
         log = folder / f"blender-{name}.log"
         if not is_brief:
             rows.append(_row(f"Blender {name}", "all tests", _suite, name, archive, log))
@@ -108,7 +114,7 @@ def _row(what: str, tests: str, check: Callable[..., Count], *arguments: object)
     return Row(what, tests, outcome, is_failed)
 
 
-def _update(name: str, archive: Path, previous: Path, log: Path) -> Count:
+def _update(name: str, archive: Path, previous: Path, log: Path, repository: str = "user_default") -> Count:
     """Version 0.1.0, the update, and the time after: one Blender after the other in the same profile."""
     blender = environment.blender(name)
     variables = distribution.fresh_profile(archive, log.with_suffix(".profile"))
@@ -119,6 +125,8 @@ def _update(name: str, archive: Path, previous: Path, log: Path) -> Count:
         AUTHALIC_OLD_ZIP=str(previous),
         AUTHALIC_VERSION=version(),
         AUTHALIC_COMPATIBILITY=str(files),
+        AUTHALIC_REPOSITORY=repository,
+        AUTHALIC_BLENDER_EXT=str(distribution.tool_for_extensions(blender)),
         PYTHONPATH=str(ROOT / "tests" / "blender"),
     )
     count = Count()

@@ -21,7 +21,7 @@ from shell import DIST, OUT, ROOT, Unavailable, content_hash, files_below, run, 
 THIRD_PARTY = "THIRD-PARTY-LICENSES.md"
 """The licenses of the crates that are compiled into the wheel."""
 WHEEL_SOURCES = (
-    *("Cargo.toml", "Cargo.lock", "pyproject.toml", "README.md"),
+    *("Cargo.toml", "Cargo.lock", "pyproject.toml"),
     *(THIRD_PARTY, "rust/core", "rust/python"),
 )
 EXTENSION_SOURCES = ("addon", "docs/blender.md", "scripts/lib/manual.py")
@@ -107,10 +107,15 @@ def pack_extension(target: Path, wheel: Path, blender: Environment, log: Path | 
 
 def blender_ext(blender: Environment, *words: object, log: Path | None = None) -> str:
     """Runs Blender's own tool for extensions, which needs no Blender."""
+    return run([blender.python, tool_for_extensions(blender), *words], _UTC, log)
+
+
+def tool_for_extensions(blender: Environment) -> Path:
+    """The program that is Blender's own tool for extensions."""
     tools = sorted(blender.folder.rglob("bl_pkg/cli/blender_ext.py"))
     if not tools:
         raise Unavailable(f"the bpy package in {blender.folder} has no blender_ext.py")
-    return run([blender.python, tools[0], *words], _UTC, log)
+    return tools[0]
 
 
 def build_previous(source: Path, number: str, archive: Path, dev: Environment, blender: Environment) -> None:

@@ -3,6 +3,9 @@
 
 import json
 import os
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +15,9 @@ import numpy as np
 import spheres
 from meshes import MeshObject
 
-MODULE = "bl_ext.user_default.authalic"
+# "user_default" gets files; another one is a remote repository, as of the site, whose index is a file here.
+REPOSITORY = os.environ.get("AUTHALIC_REPOSITORY", "user_default")
+MODULE = f"bl_ext.{REPOSITORY}.authalic"
 FOLDER = Path(os.environ["AUTHALIC_COMPATIBILITY"])
 PROFILE = Path(os.environ["BLENDER_USER_RESOURCES"])
 SAVED, LANDMARKS, FACTS = FOLDER / "before.blend", FOLDER / "landmarks.json", FOLDER / "facts.json"
@@ -34,9 +39,43 @@ SETTINGS = {"show": False, "landmarks": [2, 0], "curves": [0, 0]}
 
 def install(archive: str) -> None:
     """Installs and enables a zip as a person would; a version that is installed is updated."""
-    bpy.ops.extensions.package_install_files(
-        filepath=os.path.abspath(archive), repo="user_default", enable_on_install=True
-    )
+    if REPOSITORY == "user_default":
+        bpy.ops.extensions.package_install_files(
+            filepath=os.path.abspath(archive), repo=REPOSITORY, enable_on_install=True
+        )
+    else:
+        _install_from_repository(_published(archive))
+
+
+def _published(archive: str) -> str:
+    """Makes a zip the only one of the remote repository; returns the address of its index."""
+    place = FOLDER / "repository"
+    shutil.rmtree(place, ignore_errors=True)
+    place.mkdir()
+    shutil.copy(archive, place)
+    tool = [sys.executable, os.environ["AUTHALIC_BLENDER_EXT"], "server-generate", "--repo-dir", str(place)]
+    subprocess.run(tool, check=True)
+    return (place / "index.json").as_uri()
+
+
+def _install_from_repository(address: str) -> None:
+    """Looks for updates; updates all that Blender finds to be newer, or installs what is not there yet."""
+    preferences: Any = bpy.context.preferences
+    preferences.system.use_online_access = True
+    repos = preferences.extensions.repos
+    if not any(repo.module == REPOSITORY for repo in repos):
+        repos.new(name="Authalic", module=REPOSITORY, remote_url=address)
+    bpy.ops.extensions.repo_sync(repo_index=repo_index())
+    if folder().exists():
+        bpy.ops.extensions.package_upgrade_all()
+    else:
+        bpy.ops.extensions.package_install(repo_index=repo_index(), pkg_id="authalic", enable_on_install=True)
+
+
+def repo_index() -> int:
+    """The number of the repository."""
+    repos: Any = bpy.context.preferences.extensions.repos
+    return [repo.module for repo in repos].index(REPOSITORY)
 
 
 def is_enabled() -> bool:
@@ -49,7 +88,7 @@ def manifest() -> str:
 
 
 def folder() -> Path:
-    return PROFILE / "extensions" / "user_default" / "authalic"
+    return PROFILE / "extensions" / REPOSITORY / "authalic"
 
 
 def preferences() -> Any:

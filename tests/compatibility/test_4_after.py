@@ -23,9 +23,7 @@ def test_it_opens_what_it_has_saved() -> None:
 
 
 def test_uninstalling_leaves_nothing() -> None:
-    repos = list(bpy.context.preferences.extensions.repos)
-    number = next(index for index, repo in enumerate(repos) if repo.module == "user_default")
-    bpy.ops.extensions.package_uninstall(repo_index=number, pkg_id="authalic")
+    bpy.ops.extensions.package_uninstall(repo_index=scene.repo_index(), pkg_id="authalic")
     assert not scene.is_enabled() and not scene.folder().exists()
     assert not [name for name in dir(bpy.types) if name.startswith("AUTHALIC_")]
     assert scene.installed_libraries() == []

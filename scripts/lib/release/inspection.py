@@ -46,17 +46,25 @@ def problems_of_wheel(wheel: Path) -> list[str]:
 
 def problems_of_contents(wheel: Path) -> list[str]:
     """The same, wherever the wheel was built."""
-    code = _native_code(wheel)
+    code, info = _native_code(wheel), f"authalic-{version()}.dist-info"
     with zipfile.ZipFile(str(wheel)) as archive:
         names = archive.namelist()
-    info = f"authalic-{version()}.dist-info"
-    wanted = [*(f"{info}/licenses/{name}" for name in _LICENSES), "authalic/py.typed"]
+        metadata = archive.read(f"{info}/METADATA").decode() if f"{info}/METADATA" in names else ""
+    wanted = [*(f"{info}/licenses/{name}" for name in _LICENSES), "authalic/py.typed", f"{info}/METADATA"]
     problems = [f"{wheel.name} lacks {name}" for name in wanted if name not in names]
     if not any(name.startswith(f"{info}/sboms/") for name in names):
         problems.append(f"{wheel.name} has no list of its crates (SBOM)")
+    problems += [f"the description of {wheel.name} has {target}" for target in relative_targets(metadata)]
     return problems + [
         f"{wheel.name} holds code under the LGPL: {text.decode()}" for text in _LGPL if text in code
     ]
+
+
+def relative_targets(text: str) -> list[str]:
+    """The links and pictures of a Markdown text that lead to files beside it: in a registry, nowhere."""
+    targets = re.findall(r"\]\(([^)\s]+)", text) + re.findall(r"(?m)^ *\[[^\]]+\]: *(\S+)", text)
+    targets += re.findall(r"""(?:src|href)=["']([^"']+)""", text)
+    return [target for target in targets if not re.match(r"https?://|mailto:|#", target)]
 
 
 def _native_code(wheel: Path) -> bytes:
@@ -132,7 +140,14 @@ def _in_sbom(wheel: Path, tools: environment.Environment, log: Path | None) -> s
 def _problems_of_sdist(sdist: Path) -> list[str]:
     with tarfile.open(str(sdist)) as archive:
         names = {member.name.partition("/")[2] for member in archive if member.isfile()}
-    wanted = ("Cargo.lock", "Cargo.toml", "pyproject.toml", "README.md", "CHANGELOG.md", *_LICENSES)
+    wanted = (
+        "Cargo.lock",
+        "Cargo.toml",
+        "pyproject.toml",
+        "rust/python/README.md",
+        "CHANGELOG.md",
+        *_LICENSES,
+    )
     strange = sorted(name for name in names if re.search(r"__pycache__|\.(so|pyd|pyc)$|(^|/)target/", name))
     return [
         *(f"{sdist.name} lacks {name}" for name in wanted if name not in names),

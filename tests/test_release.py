@@ -4,6 +4,7 @@
 import hashlib
 import json
 import os
+import platform
 import re
 import struct
 import tomllib
@@ -436,6 +437,33 @@ def test_the_licenses_are_those_of_the_crates_that_are_compiled():
     assert "Regents of the University of Minnesota" in (ROOT / notices.NAME).read_text(encoding="utf-8")
 
 
+@pytest.mark.skipif(platform.system() != "Linux", reason="elsewhere the standard library has other crates")
+def test_the_licenses_of_the_standard_library_are_those_of_its_crates():
+    """Its crates are files beside the compiler, except for what tests, tools and `panic=abort` need."""
+    folder = Path(shell.run(["rustc", "--print", "target-libdir"]).strip())
+    files = {re.sub(r"^lib|-[0-9a-f]+\.rlib$", "", path.name) for path in folder.glob("*.rlib")}
+    unused = {"getopts", "panic_abort", "proc_macro", "profiler_builtins", "rustc_literal_escaper", "sysroot"}
+    linked = {name for name in files - unused - {"test"} if not name.startswith("rustc_std_workspace")}
+    assert {"std", "core", "gimli"} <= linked == notices.of_standard_library()
+
+
+def test_every_wheel_has_the_licenses_of_the_standard_library(built):
+    whole = (ROOT / notices.NAME).read_text(encoding="utf-8")
+    narrow = notices.of([("faer", "0.24.4")], whole)
+    assert notices.of_standard_library(narrow) == notices.of_standard_library(whole) > {"miniz_oxide"}
+    assert "- rayon " not in narrow and "UNICODE LICENSE V3" in narrow and narrow.count("```") % 2 == 0
+    template = (ROOT / "scripts" / "licenses.hbs").read_text(encoding="utf-8")
+    assert whole.partition(notices._STANDARD)[2] == template.partition(notices._STANDARD)[2] != ""
+    own, info = notices.compiled([platforms.PLATFORMS["linux-x64"].target]), f"authalic-{shell.version()}"
+    licenses = {f"{info}.dist-info__licenses__{notices.NAME}": notices.of(own, whole).encode()}
+    code = b"\x7fELF panicked at /rust/deps/rustc-demangle-0.1.27/src/v0.rs, /rust/deps/new_one-1.0/a.rs"
+    wheel = rewritten(built[0], without=notices.NAME, **licenses)
+    rewritten(wheel, without="_native", **{"authalic___native.abi3.so": code})
+    assert inspection.problems_of_lists(wheel, own) == [
+        f"{notices.NAME} of {wheel.name} lacks new_one of the standard library"
+    ]
+
+
 def test_the_licenses_are_gathered_for_all_platforms_that_have_wheels():
     text = notices.CONFIGURATION.read_text(encoding="utf-8")
     gathered = re.findall(r'"(.+)"', text.partition("targets = [")[2].partition("]")[0])
@@ -481,6 +509,7 @@ def test_a_wheel_lists_the_crates_of_its_own_platform(built, tmp_path, tag, has,
     bill = components("authalic-python 0.0.0", "authalic 0.0.0", *crates, "cc 1.0.0")
     with zipfile.ZipFile(wheel, "w") as archive:
         archive.writestr("authalic/py.typed", "")
+        archive.writestr("authalic/_native.abi3.so", "")
         archive.writestr(f"{info}/licenses/{notices.NAME}", everything)
         archive.writestr(f"{info}/sboms/authalic-python.cyclonedx.json", json.dumps(bill))
         archive.writestr(f"{info}/RECORD", "")
@@ -490,7 +519,7 @@ def test_a_wheel_lists_the_crates_of_its_own_platform(built, tmp_path, tag, has,
         text = archive.read(f"{info}/licenses/{notices.NAME}").decode()
         bill = json.loads(archive.read(f"{info}/sboms/authalic-python.cyclonedx.json"))
         record = archive.read(f"{info}/RECORD").decode()
-        assert record.splitlines()[-1] == f"{info}/RECORD,," and len(record.splitlines()) == 4
+        assert record.splitlines()[-1] == f"{info}/RECORD,," and len(record.splitlines()) == 5
     names = {name for name, _ in notices.listed(text)}
     assert has <= names and not lacks & names
     assert text.count("```") % 2 == 0 and ("METIS" in text or "Regents" in text) == ("metis-sys" in has)

@@ -117,7 +117,9 @@ def problems_of_lists(wheel: Path, in_sbom: set[tuple[str, str]]) -> list[str]:
     """What of a wheel's two lists of crates is not what its platform's compiler compiles, a sentence each."""
     with zipfile.ZipFile(str(wheel)) as archive:
         info = f"authalic-{version()}.dist-info"
-        licensed = notices.listed(archive.read(f"{info}/licenses/{notices.NAME}").decode())
+        text = archive.read(f"{info}/licenses/{notices.NAME}").decode()
+    licensed = notices.listed(text)
+    unnamed = notices.in_standard_library(_native_code(wheel)) - notices.of_standard_library(text)
     crates = notices.compiled([platforms.of_wheel(wheel).target])
     return [
         f"{what} of {wheel.name} {fault} {name} {number}"
@@ -127,7 +129,7 @@ def problems_of_lists(wheel: Path, in_sbom: set[tuple[str, str]]) -> list[str]:
             ("has a crate that is not in it:", found - crates),
         )
         for name, number in sorted(differing)
-    ]
+    ] + [f"{notices.NAME} of {wheel.name} lacks {name} of the standard library" for name in sorted(unnamed)]
 
 
 def _in_sbom(wheel: Path, tools: environment.Environment, log: Path | None) -> set[tuple[str, str]]:

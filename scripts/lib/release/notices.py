@@ -17,6 +17,9 @@ NAME = distribution.THIRD_PARTY
 CONFIGURATION = ROOT / "scripts" / "licenses.toml"
 _TEMPLATE = ROOT / "scripts" / "licenses.hbs"
 _FEATURES = ("--features", "metis")
+_STANDARD = "## The standard library of Rust\n"
+# Crates of the standard library by the paths of their sources in messages of panics.
+_STANDARD_SOURCES = re.compile(rb"/rust/deps/([\w-]+?)-\d")
 
 
 def gather(log: Path | None = None) -> str:
@@ -55,14 +58,29 @@ def listed(text: str | None = None) -> set[tuple[str, str]]:
 
 
 def of(crates: Collection[tuple[str, str]], text: str) -> str:
-    """The file for some of its crates: the licenses that none of them is under are left out."""
+    """The file for some of its crates: the licenses that none of them is under are left out.
+
+    The section of the standard library stays, which every wheel has.
+    """
     head, *sections = re.split(r"(?m)^(?=## )", text)
     kept = [
         re.sub(r"(?m)^- (\S+) (\d\S*)\n", lambda row: row[0] if row.groups() in crates else "", section)
         for section in sections
-        if listed(section) & set(crates)
+        if listed(section) & set(crates) or section.startswith(_STANDARD)
     ]
     return (head + "".join(kept)).rstrip() + "\n"
+
+
+def of_standard_library(text: str | None = None) -> set[str]:
+    """The names of the crates in the section of the standard library, with `_` in the place of `-`."""
+    text = (ROOT / NAME).read_text(encoding="utf-8") if text is None else text
+    rows = re.findall(r"(?m)^- ((?:`\w+`(?:, )?)+): ", text.partition(_STANDARD)[2])
+    return {name for row in rows for name in re.findall(r"\w+", row)}
+
+
+def in_standard_library(code: bytes) -> set[str]:
+    """The names, likewise, of the crates of the standard library that a compiled module tells of."""
+    return {name.decode().replace("-", "_") for name in _STANDARD_SOURCES.findall(code)}
 
 
 def compiled(targets: Collection[str] | None = None) -> set[tuple[str, str]]:

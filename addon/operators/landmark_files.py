@@ -17,7 +17,7 @@ from ..landmarks import curves as landmark_curves
 from ..landmarks import files as landmark_files
 from ..landmarks import points as landmark_points
 from ..landmarks.curves import Curve
-from ..landmarks.files import Point
+from ..landmarks.files import CannotRead, Point, TooLarge
 from ..landmarks.objects import CannotPair, active_source
 from ..landmarks.points import Pair
 from . import poll
@@ -36,7 +36,7 @@ class _File(OperatorMixin):
     def execute(self, context: bpy.types.Context) -> Status:
         try:
             return self.run(active_source(context), self._path())
-        except (CannotPair, landmark_files.CannotRead, OSError, UnicodeError) as problem:
+        except (CannotPair, CannotRead, TooLarge, OSError, UnicodeError) as problem:
             name = Path(self.filepath).name
             text = problem.strerror if isinstance(problem, OSError) and problem.strerror else problem
             self.report({"ERROR"}, f"{name}: {text}" if name else str(text))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Landmarks in .blend files and as JSON."""
 
+import io
 import json
 import os
 from pathlib import Path
@@ -76,14 +77,58 @@ def test_a_file_that_cannot_be_written_whole_stays(
     bpy.ops.authalic.landmark_export(filepath=str(path))
     before = path.read_bytes()
 
-    def full(self: Path, _text: str, **_options: object) -> None:
-        self.write_bytes(b"{")
-        raise OSError(28, "No space left on device")
+    class Full(io.FileIO):
+        def write(self, data: Any, /) -> int:
+            super().write(data[:1])
+            raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_text", full)
+    monkeypatch.setattr(Path, "open", lambda self, mode: Full(self, mode.replace("b", "")))
     pairing.refused("No space left", bpy.ops.authalic.landmark_export, filepath=str(path))
     assert path.read_bytes() == before
     assert [each.name for each in tmp_path.iterdir()] == ["pairs.json"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs links")
+def test_export_follows_no_link_that_lies_beside(
+    heads: tuple[MeshObject, MeshObject], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pairing.add(20, 30)
+    folder, victim = tmp_path / "folder", tmp_path / "victim"
+    folder.mkdir()
+    victim.write_text("precious")
+    (folder / ".pairs.json.part").symlink_to(victim)
+    bpy.ops.authalic.landmark_export(filepath=str(folder / "pairs.json"))
+    assert len(json.loads((folder / "pairs.json").read_text(encoding="utf-8"))["pairs"]) == 1
+    # Not even where the name could be guessed.
+    monkeypatch.setattr(os, "urandom", bytes)
+    (folder / f".pairs.json.{bytes(8).hex()}").symlink_to(victim)
+    pairing.refused("exists", bpy.ops.authalic.landmark_export, filepath=str(folder / "pairs.json"))
+    assert victim.read_text() == "precious"
+
+
+def test_export_writes_nothing_that_import_refuses(
+    heads: tuple[MeshObject, MeshObject], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pairing.add(20, 30)
+    pairing.add(21, 31)
+    path = tmp_path / "pairs.json"
+    for name, most, said in (("MOST_PAIRS", 1, "there are 2 pairs; 1 are"), ("MOST_BYTES", 99, "MB are the")):
+        with monkeypatch.context() as patch:
+            patch.setattr(part("landmarks.files"), name, most)
+            pairing.refused(said, bpy.ops.authalic.landmark_export, filepath=str(path))
+        assert not path.exists()
+
+
+def test_what_the_limits_of_a_file_are_meant_for_fits() -> None:
+    """10,000 pairs with weights, and 1,000 curves of 100 vertices, of meshes of millions."""
+    files = part("landmarks.files")
+    pairs = [files.Point(f"Landmark {k}", 7_000_000 + k, 8_000_000 + k, 123.456) for k in range(10_000)]
+    path = tuple(range(7_000_000, 7_000_100))
+    curves = [(f"Curve {k}", path, path) for k in range(1_000)]
+    text = files.to_text(files.Landmarks("Head A", "Head B", pairs, curves))
+    assert len(text) < files.MOST_BYTES
+    again = files.from_text(text)
+    assert again.pairs == pairs and again.curves == curves
 
 
 def test_export_leaves_out_what_is_lost(heads: tuple[MeshObject, MeshObject], tmp_path: Path) -> None:
@@ -149,7 +194,7 @@ PAIR = {"source": 1, "target": 2}
         ('{"format": NaN}', "holds no landmarks"),
         ({**GOOD, "version": [1] * 1000, "pairs": []}, "of version a list"),
         ({**GOOD, "pairs": [PAIR] * 10_001}, "10001 pairs; 10000 are the most"),
-        ({**GOOD, "pairs": [], "curves": [PAIR] * 10_001}, "10001 curves"),
+        ({**GOOD, "pairs": [], "curves": [PAIR] * 1_001}, "1001 curves; 1000 are"),
         ({**GOOD, "pairs": [{**PAIR, "source": 2**31}]}, "not the number of a vertex"),
         ({**GOOD, "pairs": [{**PAIR, "source": 10**4000}]}, "0000…, not the number of a vertex"),
         ({**GOOD, "pairs": [{**PAIR, "source": float("nan")}]}, "is NaN, not the number of a vertex"),
@@ -182,9 +227,13 @@ def test_a_huge_file_is_not_read(heads: tuple[MeshObject, MeshObject], tmp_path:
     pairing.add(20, 30)
     path = tmp_path / "pairs.json"
     path.write_bytes(b" " * (part("landmarks.files").MOST_BYTES + 1))
-    pairing.refused("more than 16 MB", bpy.ops.authalic.landmark_import, filepath=str(path))
+    pairing.refused("more than 4 MB", bpy.ops.authalic.landmark_import, filepath=str(path))
     if os.path.exists("/dev/zero"):  # which never ends
-        pairing.refused("more than 16 MB", bpy.ops.authalic.landmark_import, filepath="/dev/zero")
+        pairing.refused("a device or a pipe", bpy.ops.authalic.landmark_import, filepath="/dev/zero")
+        os.mkfifo(tmp_path / "pipe.json")
+        pairing.refused(
+            "a device or a pipe", bpy.ops.authalic.landmark_import, filepath=str(tmp_path / "pipe.json")
+        )
 
 
 def test_files_that_cannot_be_read_or_written(heads: tuple[MeshObject, MeshObject], tmp_path: Path) -> None:

@@ -181,7 +181,7 @@ def _write(path: Path, arrays: Arrays) -> None:
     """Writes beside the place and moves there, so that there is no half file at any time."""
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise ValueError(f"{path} is a device or a pipe, which no file can replace; choose another name")
-    temporary = path.with_name(f".{path.name[-40:]}.{os.urandom(4).hex()}")
+    temporary = path.with_name(f".{path.name[-40:]}.{os.urandom(8).hex()}")
     try:
         with temporary.open("xb") as file:
             np.savez(file, **arrays)  # type: ignore[arg-type]

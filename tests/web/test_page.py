@@ -144,8 +144,9 @@ def test_less_shear_takes_longer_seams(page: Page) -> None:
     assert low["shear"] <= 1.25 * 1.012
 
 
-def test_a_line_that_cannot_be_read_is_told_as_by_the_package(page: Page, tmp_path: Path) -> None:
-    text = SQUARE + "f 1 2 zebra\n"
+@pytest.mark.parametrize("line", ["f 1 2 zebra", "f 1 2 4294967296", "v 1_0 0 0"])
+def test_a_line_that_cannot_be_read_is_told_as_by_the_package(page: Page, line: str, tmp_path: Path) -> None:
+    text = SQUARE + line + "\n"
     page.drop(text)
     path = tmp_path / "broken.obj"
     path.write_text(text)

@@ -3,6 +3,7 @@
 // answers with messages of a `kind`: "ready", "mesh", "progress", "uv", "problem".
 
 import init, { PageMesh, Problem } from "./authalic_web.js";
+import { wordsOfFailure } from "./failures.js";
 
 let panic = "";
 let lastReport = 0;
@@ -71,7 +72,5 @@ function wordsOf(error) {
   if (error instanceof Problem) {
     return { message: error.message, errorKind: error.kind, isMendable: error.isMendable, isFatal: false };
   }
-  // after a panic, or without memory, the module is of no more use
-  const message = `The core stopped (${panic || error}). Please report this mesh.`;
-  return { message, errorKind: "panic", isMendable: false, isFatal: true };
+  return wordsOfFailure(panic, error);
 }

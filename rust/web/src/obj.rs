@@ -47,12 +47,15 @@ impl ObjFile {
     /// Reads the text of a file: lines `v`, `vt` and `f`. Indices may be relative to the end.
     pub fn read(text: &str) -> Result<Self, Problem> {
         let mut file = Self { vertices: Vec::new(), uv: Vec::new(), polygons: Vec::new(), lines: Vec::new() };
+        let mut numbers = Vec::new();
         for (number, line) in joined(text).into_iter().enumerate() {
             let Some(line) = file.read_line(line) else {
                 return Err(unreadable(number + 1, text));
             };
+            numbers.extend(matches!(line, Line::Polygon(_)).then_some(number + 1));
             file.lines.push(line);
         }
+        file.check_vertices(&numbers)?;
         file.drop_uv_out_of_range();
         Ok(file)
     }
@@ -144,6 +147,19 @@ impl ObjFile {
             }
         }
         Some(Polygon { vertices, uv })
+    }
+
+    /// Refuses polygons with vertices that do not exist; `numbers` are their lines.
+    fn check_vertices(&self, numbers: &[usize]) -> Result<(), Problem> {
+        let count = self.vertices.len() as u64;
+        for (polygon, number) in self.polygons.iter().zip(numbers) {
+            let last = polygon.vertices.iter().map(|&vertex| u64::from(vertex) + 1).max().unwrap_or(0);
+            if last > count {
+                let there = if count == 1 { "is 1 vertex".into() } else { format!("are {count} vertices") };
+                return Err(Problem::of_file(format!("line {number} names vertex {last}, but there {there}")));
+            }
+        }
+        Ok(())
     }
 
     /// Forgets texture vertices that do not exist.
@@ -329,6 +345,18 @@ l 1 2
         assert_eq!(message("# 1\nf 0 1 2\n"), "line 2 cannot be read: 'f 0 1 2'");
         assert_eq!(message("v 1 2"), "line 1 cannot be read: 'v 1 2'");
         assert_eq!(message("f -1 -2 -3"), "line 1 cannot be read: 'f -1 -2 -3'");
+    }
+
+    #[test]
+    fn a_line_that_names_a_missing_vertex_is_named() {
+        let message = |text: &str| ObjFile::read(text).unwrap_err().message();
+        let square = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+        let last = format!("{square}f 1 2 3\nf 1 2 4294967296\n");
+        assert_eq!(message(&last), "line 5 names vertex 4294967296, but there are 3 vertices");
+        assert_eq!(message("v 0 0 0\nf 1 1 2"), "line 2 names vertex 2, but there is 1 vertex");
+        // a vertex may come after the polygon that names it
+        assert!(ObjFile::read(&format!("f 1 2 3\n{square}")).is_ok());
+        assert_eq!(message("v 1_0 0 0"), "line 1 cannot be read: 'v 1_0 0 0'");
     }
 
     #[test]

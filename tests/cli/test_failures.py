@@ -154,6 +154,24 @@ def test_wrong_words_are_data_too_with_json(run):
     assert (error["kind"], error["exit_code"]) == ("usage", 2) and "nothing.obj" in error["message"]
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["sphere", "ball.obj", "out.obj", "--threads", 10**20],
+        ["sphere", "ball.obj", "out.obj", "--max-iterations", 10**20],
+        ["unwrap", "ball.obj", "out.obj", "--max-islands", 10**20],
+        ["repair", "ball.obj", "out.obj", "--close-holes", 10**20],
+        ["repair", "ball.obj", "out.obj", "--merge", 10**20],
+        ["batch", "sphere", "ball.obj", "--out", "out", "--workers", 10**20],
+    ],
+)
+def test_numbers_beyond_use_are_wrong_words(words, run, folder):
+    before = names(folder)
+    result = run(*words)
+    assert result.code == 2 and str(words[-2]) in result.err
+    assert names(folder) == before
+
+
 def test_a_file_that_cannot_be_written_leaves_the_other_one_out_too(run, folder):
     (folder / "areal.npy").mkdir()
     before = names(folder)

@@ -156,7 +156,9 @@ impl ObjFile {
             let last = polygon.vertices.iter().map(|&vertex| u64::from(vertex) + 1).max().unwrap_or(0);
             if last > count {
                 let there = if count == 1 { "is 1 vertex".into() } else { format!("are {count} vertices") };
-                return Err(Problem::of_file(format!("line {number} names vertex {last}, but there {there}")));
+                return Err(Problem::of_file(format!(
+                    "line {number} names vertex {last}, but there {there}"
+                )));
             }
         }
         Ok(())

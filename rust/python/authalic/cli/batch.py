@@ -43,10 +43,10 @@ def _shared(command: Command) -> Command:
         click.option("--out", required=True, type=folder, help="The folder of the batch."),
         click.option("--pattern", help="Names of files in folders, such as '*.pial'."),
         click.option("--scheduler", help="Address of a Dask scheduler, such as tcp://host:8786."),
-        click.option("--workers", type=click.IntRange(1), help="Processes on this machine."),
+        click.option("--workers", type=click.IntRange(1, 10_000), help="Processes on this machine."),
         click.option("--memory", callback=_size, help="Of each process on this machine, such as 4GB."),
         click.option(
-            "--retries", type=click.IntRange(0), default=2, show_default=True, help="After failures."
+            "--retries", type=click.IntRange(0, 10_000), default=2, show_default=True, help="After failures."
         ),
         click.option("--again", is_flag=True, help="Map also what is done."),
         options.common,

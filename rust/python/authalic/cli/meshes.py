@@ -65,10 +65,13 @@ def _choice(*words: str) -> Callable[[click.Context, click.Parameter, str | None
         if value in words:
             return {"all": True, "none": False}.get(value, value)
         try:
-            return float(value) if "." in value or "e" in value else int(value)
+            number = float(value) if "." in value or "e" in value else int(value)
         except ValueError as error:
             known = ", ".join(words)
             raise click.BadParameter(f"it is a number or {known}, but is {value}", context, option) from error
+        if isinstance(number, int) and abs(number) > options.MOST:
+            raise click.BadParameter(f"whole numbers end with {options.MOST}", context, option)
+        return number
 
     return read
 

@@ -13,6 +13,10 @@ from .frame import Frame
 
 Command = Callable[..., Any]
 
+_MOST_THREADS = 4096
+MOST = 2**31 - 1
+"""Of other numbers that are options: far beyond any use, and within what the library takes."""
+
 format_names = click.Choice([format.name for format in MESH_FORMATS])
 existing_or_stream = click.Path(exists=True, dir_okay=False, allow_dash=True, path_type=Path)
 existing = click.Path(exists=True, dir_okay=False, path_type=Path)
@@ -33,7 +37,11 @@ def common(command: Command) -> Command:
         framed,
         as_json,
         click.option("--quiet", "-q", is_flag=True, help="Print errors only."),
-        click.option("--threads", type=click.IntRange(0), help="Number of threads. 0: one per processor."),
+        click.option(
+            "--threads",
+            type=click.IntRange(0, _MOST_THREADS),
+            help="Number of threads. 0: one per processor.",
+        ),
         input_format,
         click.option("--output-format", type=format_names, help="Where the name does not say it."),
     )
@@ -47,7 +55,7 @@ def descent(command: Command) -> Command:
         click.option(
             "--area-tolerance", type=float, help="Least shear with areas within this, such as 0.01."
         ),
-        click.option("--max-iterations", type=click.IntRange(0), help="Iteration limit."),
+        click.option("--max-iterations", type=click.IntRange(0, MOST), help="Iteration limit."),
         click.option("--tolerance", type=float, help="Area deviation below which the map has converged."),
         click.option(
             "--repair", is_flag=True, default=None, help="Repair first; the map is of the repaired mesh."
@@ -94,7 +102,7 @@ def search(command: Command) -> Command:
         command,
         click.option("--target", type=float, help="Shear wanted; less takes longer seams. [default: 1.4]"),
         click.option("--symmetry", type=click.Choice(["auto", "off"]), help="[default: auto]"),
-        click.option("--max-islands", type=click.IntRange(1), help="Limit of the number of islands."),
+        click.option("--max-islands", type=click.IntRange(1, MOST), help="Limit of the number of islands."),
         click.option("--overlap", is_flag=True, default=None, help="Islands may overlap themselves."),
     )
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The targets of atheris: the checks of arrays, files of landmarks, and saved results."""
+"""The targets of atheris: the checks of arrays, files of meshes and landmarks, and saved results."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from shell import ROOT, run
 
 TARGETS = {
     "arrays": "checks of arrays of any type, shape and layout",
+    "files": "files of meshes and values",
     "json": "files of landmarks",
     "results": "saved results with changed entries",
 }

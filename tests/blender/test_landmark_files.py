@@ -103,7 +103,7 @@ def test_export_follows_no_link_that_lies_beside(
     monkeypatch.setattr(os, "urandom", bytes)
     (folder / f".pairs.json.{bytes(8).hex()}").symlink_to(victim)
     pairing.refused("exists", bpy.ops.authalic.landmark_export, filepath=str(folder / "pairs.json"))
-    assert victim.read_text() == "precious"
+    assert victim.read_text(encoding="utf-8") == "precious"
 
 
 def test_export_writes_nothing_that_import_refuses(

@@ -19,8 +19,8 @@ from shell import ROOT, VENVS, CommandFailed, Unavailable, run, say, version
 from steps import Count, TestsFailed, run_pytest
 
 PREVIOUS = "0.1.0"
-# Version 0.1.0 as it was used: before the extension's files were moved, and with preferences.
-_PREVIOUS_COMMITS = ("7ea7610", "092ef66")
+# Version 0.1.0 as it was used: before the extension's files were moved, and at its end.
+_PREVIOUS_COMMITS = ("7ea7610", "ecac7ea")
 BLENDERS = ("4.2", "4.5", "5.0", "5.1", "5.2", "5.3")
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 _PARTS = ("test_1_before.py", "test_2_update.py", "test_3_restart.py", "test_4_after.py")

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Areas against angles: presets, outlines, slider, tolerance, and the islands that result."""
 
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -114,13 +113,6 @@ def test_upright_finds_the_smallest_box(aspect: float) -> None:
             np.linalg.det([two - one, three - one]) for one, two, three in ((a, b, c), (p, q, r))
         )
         assert before == pytest.approx(after)
-
-
-def test_upright_is_quick() -> None:
-    points = np.random.default_rng(5).standard_normal((300_000, 2))
-    started = time.perf_counter()
-    part("surfaces.islands").upright(points)
-    assert time.perf_counter() - started < 2
 
 
 def test_spheres_take_the_slider_too() -> None:

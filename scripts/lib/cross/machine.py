@@ -63,7 +63,9 @@ def run_inside(
 def cargo(platform: Platform, words: Sequence[object], log: Path, program: str = "cargo") -> str:
     """Runs cargo, or a program that calls it, for a platform; returns the output."""
     variables = {**platform.variables, **_STANDARD_LIBRARY}
-    return run_inside([program, *words, "--target", platform.triple], log, variables)
+    command, *options = words
+    # After the command: what follows `--` is for the programs that it runs.
+    return run_inside([program, command, "--target", platform.triple, *options], log, variables)
 
 
 def prepare(platform: Platform, log: Path) -> None:

@@ -5,6 +5,8 @@ import sys
 
 import pytest
 
+import authalic
+
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux says how much memory is free")
 
 # Grids of n × n vertices, one of them closed by a further vertex. The address space may grow by 150 MB only.
@@ -68,10 +70,89 @@ def test_a_run_without_memory_is_refused_and_python_lives_on(run_python):
         **dict.fromkeys(("register_spheres", "register_hyperbolic"), 320_002),
         "hyperbolic_structure": 160_001,
         **dict.fromkeys(("repair", "untangle"), 640_000),
-        "register_disks, one large": 160_000,
+        "register_disks, one large": 160_900,
     }
     lines = run_python(LIMITED).splitlines()
     assert lines == [*(f"{name} out_of_memory 0 {n}" for name, n in n_vertices.items()), "still alive"]
+
+
+# Limits below what each call takes, some above what is refused before the work starts.
+NARROW = """
+import resource, numpy as np, authalic
+from api.test_memory import LIMITED
+exec(LIMITED.split("small, large")[0])
+
+def limited(megabytes, call):
+    [size] = [line for line in open("/proc/self/status") if line.startswith("VmSize")]
+    most = 1024 * int(size.split()[1]) + 1_000_000 * megabytes
+    resource.setrlimit(resource.RLIMIT_AS, (most, resource.RLIM_INFINITY))
+    try:
+        call()
+        return "none"
+    except (authalic.SolverError, authalic.MeshError) as error:
+        return error.kind
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+
+corners = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+pyramid = authalic.Surface(corners, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
+sphere = authalic.sphere_map(pyramid)
+same = authalic.register_spheres(pyramid, pyramid, source_landmarks=[0, 1], target_landmarks=[0, 1])
+large, ball = authalic.Surface(*grid(400)), authalic.Surface(*closed(400))
+vertices, faces = grid(1500)
+million, flat = authalic.Surface(vertices, faces), vertices[:, :2].copy()
+many = np.broadcast_to(np.ones(3), (10_000_000, 3))
+calls = {
+    "disk_map": (900, lambda: authalic.disk_map(large)),
+    "disk_map, free": (450, lambda: authalic.disk_map(large, boundary="free", angle_weight=1e-3)),
+    "sphere_map": (900, lambda: authalic.sphere_map(ball)),
+    "seams": (700, lambda: authalic.seams(large)),
+    "Surface": (100, lambda: authalic.Surface(vertices, faces)),
+    "Surface of repeated rows": (300, lambda: authalic.Surface(many, [[0, 1, 2]])),
+    "cut": (400, lambda: million.cut()),
+    "distortion": (250, lambda: authalic.distortion(million, flat)),
+    "distortions": (250, lambda: authalic.distortions([million], [flat])),
+    "stretch_hessian": (400, lambda: authalic.stretch_hessian(million, vertices)),
+    "pack": (200, lambda: authalic.pack(flat, faces, np.zeros(len(faces), int))),
+    "equirectangular": (1000, lambda: sphere.equirectangular(np.arange(4.0), (30_000, 10_000))),
+    "equal_area_grid": (1000, lambda: sphere.equal_area_grid(np.arange(4.0), 20_000)),
+    "sample": (1000, lambda: sphere.sample(np.zeros((4, 1_000_000)), corners.repeat(500, axis=0))),
+    "locate": (400, lambda: sphere.locate(many)),
+    "follow": (400, lambda: same.follow(many)),
+    "pull": (100, lambda: same.pull(np.broadcast_to(np.zeros(1), (4, 10_000_000)))),
+}
+for name, (megabytes, call) in calls.items():
+    print(name, "->", limited(megabytes, call), flush=True)
+"""
+
+
+def test_what_does_not_fit_into_memory_is_an_error_of_every_call(run_python):
+    lines = run_python(NARROW).splitlines()
+    assert len(lines) == 17
+    assert [line for line in lines if not line.endswith("-> out_of_memory")] == []
+
+
+def test_threads_beyond_reason_are_not_started(run_python):
+    code = """
+import threading, authalic
+from api import meshes
+authalic.set_threads(2**40)
+authalic.disk_map(*meshes.grid(40))
+print(len([name for name in __import__("os").listdir("/proc/self/task")]) < 1100)
+"""
+    assert run_python(code).strip() == "True"
+
+
+def test_a_sequence_that_lies_about_its_length_is_read_to_its_end():
+    class Long(list):
+        def __len__(self):
+            return 2**62
+
+    square = ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    maps = authalic.disk_maps(Long([square]), densities=Long([[1.0, 2.0]]))
+    assert len(maps) == 1 and maps[0].status == "converged"
+    with pytest.raises(TypeError, match="string"):
+        authalic.disk_maps("ab")
 
 
 def test_the_message_has_the_numbers(run_python):

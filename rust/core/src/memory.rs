@@ -1,7 +1,45 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The memory that is left for this process, as Linux tells it; for the bindings, and hidden.
+//! The memory that is left for this process, as Linux tells it; for solvers and the bindings, and hidden.
+//!
+//! A program that lacks memory midway is ended, so whoever is about to take much asks before.
 
 use std::fs::read_to_string;
+
+use crate::error::NumericsError;
+
+/// Less is not asked for: reading the system's tables takes longer than most small runs.
+const LITTLE: u64 = 16_000_000;
+
+/// What threads and the allocator keep for themselves, mostly of a limited address space.
+const KEPT: u64 = 150_000_000;
+
+/// Refuses work on surfaces of `n_vertices` in all that takes so many bytes for each.
+///
+/// # Errors
+/// [`NumericsError::OutOfMemory`] where less is free.
+pub fn require_for_vertices(bytes: u64, n_vertices: usize) -> Result<(), NumericsError> {
+    let needed = bytes.saturating_mul(n_vertices as u64);
+    lacking(needed)
+        .map_or(Ok(()), |available| Err(NumericsError::OutOfMemory { n_vertices, needed, available }))
+}
+
+/// Refuses arrays of `n_numbers` in all that take so many bytes for each, with what they are computed from.
+///
+/// # Errors
+/// [`NumericsError::ArraysOutOfMemory`] where less is free.
+pub fn require_for_numbers(bytes: u64, n_numbers: usize) -> Result<(), NumericsError> {
+    let needed = bytes.saturating_mul(n_numbers as u64);
+    lacking(needed)
+        .map_or(Ok(()), |available| Err(NumericsError::ArraysOutOfMemory { n_numbers, needed, available }))
+}
+
+/// The bytes that are free, where they are fewer than needed and kept.
+fn lacking(needed: u64) -> Option<u64> {
+    if needed < LITTLE {
+        return None;
+    }
+    available().filter(|&available| available < needed.saturating_add(KEPT))
+}
 
 /// The bytes that this process can still have, where the system says so.
 pub fn available() -> Option<u64> {

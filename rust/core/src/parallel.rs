@@ -27,11 +27,14 @@ struct Pool {
 /// The threads in use. A forked child inherits the pool but none of its threads.
 static POOL: Mutex<Option<Pool>> = Mutex::new(None);
 
+/// The largest number of threads. Each takes memory for its stack.
+const MOST: usize = 1024;
+
 /// Sets the number of threads for all that is computed from now on. 0 stands for as many as there are
 /// processors, or as the environment variable `RAYON_NUM_THREADS` says. Results do not depend on it. What is
-/// being computed goes on with the threads that it has.
+/// being computed goes on with the threads that it has. More than 1024 count as 1024.
 pub fn set_threads(count: usize) {
-    WANTED.store(count, Ordering::Relaxed);
+    WANTED.store(count.min(MOST), Ordering::Relaxed);
 }
 
 thread_local! {

@@ -8,10 +8,35 @@ use numpy::{
     Element, IntoPyArray, PyArray, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray2,
     PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
 };
+use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::PyString;
+use pyo3::{Borrowed, FromPyObject};
 
 use crate::errors::bad_array;
+use crate::memory;
+
+/// The elements of any sequence. Its own word about its length is not believed.
+pub struct Items<T>(pub Vec<T>);
+
+impl<'py, T> FromPyObject<'_, 'py> for Items<T>
+where
+    T: for<'a> FromPyObject<'a, 'py>,
+{
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if given.is_instance_of::<PyString>() {
+            return Err(PyTypeError::new_err("a sequence is needed here, but this is a string"));
+        }
+        let mut items = Vec::new();
+        for item in given.try_iter()? {
+            items.push(item?.extract().map_err(Into::into)?);
+        }
+        Ok(Self(items))
+    }
+}
 
 /// An (n, 2) or (n, 3) array for Python.
 pub type Reals = Py<PyArray2<f64>>;
@@ -90,6 +115,7 @@ pub fn converted<'py, T: numpy::Element>(
     if array.len() > 0 && !kinds.contains(&kind(&array)?) {
         return Err(bad_array(py, name, format!("of dtype {}", array.dtype()), expected.into()));
     }
+    memory::check_numbers(py, memory::GIVEN, array.len())?;
     // C order and aligned: a view into a packed record is not aligned
     let required =
         py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "require"), (array, dtype, "CA"))?;
@@ -126,11 +152,11 @@ pub fn shape_words(shape: &[usize]) -> String {
 /// One array or `None` for each of `count` surfaces; `None` for all where there is no list.
 pub fn reals_of_each(
     py: Python<'_>,
-    list: Option<Vec<Option<Bound<'_, PyAny>>>>,
+    list: Option<Items<Option<Bound<'_, PyAny>>>>,
     [name, of_each]: [&'static str; 2],
     count: usize,
 ) -> PyResult<Vec<Option<Array1<f64>>>> {
-    let Some(list) = list else { return Ok(vec![None; count]) };
+    let Some(Items(list)) = list else { return Ok(vec![None; count]) };
     if list.len() != count {
         let (found, expected) = (format!("of length {}", list.len()), format!("of length {count}"));
         return Err(bad_array(py, name, found, expected));

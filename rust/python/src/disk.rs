@@ -9,7 +9,7 @@ use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
-use crate::arrays::{Reals, from_array, real_table, reals, reals_of_each};
+use crate::arrays::{Items, Reals, from_array, real_table, reals, reals_of_each};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, to_python};
 use crate::indices::{from_indices, index_list, narrowed};
@@ -563,8 +563,8 @@ pub fn disk_map(
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn disk_maps(
     py: Python<'_>,
-    surfaces: Vec<Bound<'_, PyAny>>,
-    densities: Option<Vec<Option<Bound<'_, PyAny>>>>,
+    surfaces: Items<Bound<'_, PyAny>>,
+    densities: Option<Items<Option<Bound<'_, PyAny>>>>,
     method: &str,
     boundary: &str,
     angle_weight: f64,
@@ -584,7 +584,7 @@ pub fn disk_maps(
     let (method, boundary) = (parse_method(method)?, parse_boundary(boundary)?);
     let max_iterations = max_iterations.map(parse_iterations).transpose()?;
     let names = ["surfaces", "vertices", "faces"];
-    let given = surfaces.iter().map(|each| Given::pair(each, names)).collect::<PyResult<Vec<_>>>()?;
+    let given = surfaces.0.iter().map(|each| Given::pair(each, names)).collect::<PyResult<Vec<_>>>()?;
     let densities = reals_of_each(py, densities, ["densities", "density"], given.len())?;
     let repair = repair.then(|| RepairOptions::for_a_map(true));
     let largest = given.iter().map(Given::n_vertices).max().unwrap_or(0);

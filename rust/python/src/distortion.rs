@@ -5,9 +5,10 @@ use authalic::Error;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::{self, from_array, reals, reals_of_each};
+use crate::arrays::{self, Items, from_array, reals, reals_of_each};
 use crate::errors::{bad_array, to_python};
 use crate::indices::from_index_list;
+use crate::memory;
 use crate::result::{ResultBase, made, restorable};
 use crate::run::run;
 use crate::surface::Given;
@@ -121,6 +122,7 @@ pub fn distortion(
     let (given, map) = Given::with_image(vertices, faces, image)?;
     let map = arrays::image(map)?;
     let density = density.map(|density| reals(density, "density")).transpose()?;
+    memory::check(py, memory::FIGURES, given.n_vertices())?;
     let figures = run(py, None, move |_| {
         authalic::distortion(&given.surface()?, map.view(), density.as_ref().map(|density| density.view()))
     })?;
@@ -159,10 +161,11 @@ pub fn distortion(
 #[pyo3(signature = (surfaces, images, *, densities=None))]
 pub fn distortions(
     py: Python<'_>,
-    surfaces: Vec<Bound<'_, PyAny>>,
-    images: Vec<Bound<'_, PyAny>>,
-    densities: Option<Vec<Option<Bound<'_, PyAny>>>>,
+    surfaces: Items<Bound<'_, PyAny>>,
+    images: Items<Bound<'_, PyAny>>,
+    densities: Option<Items<Option<Bound<'_, PyAny>>>>,
 ) -> PyResult<Vec<Py<PyAny>>> {
+    let (Items(surfaces), Items(images)) = (surfaces, images);
     if images.len() != surfaces.len() {
         let (found, expected) =
             (format!("of length {}", images.len()), format!("of length {}", surfaces.len()));
@@ -172,6 +175,7 @@ pub fn distortions(
     let given = surfaces.iter().map(|each| Given::pair(each, names)).collect::<PyResult<Vec<_>>>()?;
     let images = images.iter().map(arrays::image).collect::<PyResult<Vec<_>>>()?;
     let densities = reals_of_each(py, densities, ["densities", "density"], given.len())?;
+    memory::check(py, memory::FIGURES, given.iter().map(Given::n_vertices).sum())?;
     let figures = run(py, None, move |_| {
         let surfaces = given.into_iter().map(Given::surface).collect::<Result<Vec<_>, Error>>()?;
         let maps: Vec<_> = surfaces

@@ -6,6 +6,7 @@ use numpy::ndarray::Array1;
 use pyo3::prelude::*;
 
 use crate::arrays::{own_array, real_table, reals};
+use crate::memory;
 use crate::run::run;
 use crate::surface::Given;
 
@@ -59,6 +60,7 @@ pub fn stretch_hessian(
     let (given, image) = Given::with_image(vertices, faces, image)?;
     let image = real_table::<3>(image, "image")?;
     let density = density.map(|density| reals(density, "density")).transpose()?;
+    memory::check(py, memory::HESSIAN, given.n_vertices())?;
     let hessian = run(py, None, move |_| {
         let density = density.as_ref().map(|density| density.view());
         authalic::stretch_hessian(&given.surface()?, image.view(), density)

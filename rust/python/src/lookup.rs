@@ -13,6 +13,7 @@ use pyo3::{Borrowed, FromPyObject};
 use crate::arrays::{Reals, own_array, real_table};
 use crate::errors::{bad_array, bad_option, to_python};
 use crate::indices::integer_list;
+use crate::memory;
 use crate::run::run;
 use crate::values::{Values, from_values, table_of};
 
@@ -51,6 +52,7 @@ pub fn locate(
     points: Array2<f64>,
     outside: Outside,
 ) -> PyResult<Located> {
+    memory::check_numbers(py, memory::POINT, points.nrows())?;
     let places = run(py, None, move |observer| map.locate(points.view(), outside, observer))?;
     Ok((own_array(py, places.triangles), own_array(py, places.barycentric)))
 }
@@ -163,6 +165,7 @@ impl Request<'_, '_> {
     ) -> PyResult<Py<PyAny>> {
         let values = Values::new(self.values, "values")?;
         let per = self.per(py, &map, &values)?;
+        check_result(py, points.nrows(), &values)?;
         let shape: Vec<usize> = grid.into_iter().chain(values.shape()[1..].iter().copied()).collect();
         let outside = self.beyond.outside;
         if self.nearest {
@@ -188,8 +191,10 @@ impl Request<'_, '_> {
     ) -> PyResult<Py<PyAny>> {
         grid.check().map_err(|error| to_python(py, &error))?;
         let shape = grid.shape().to_vec();
+        let values = Values::new(self.values, "values")?;
+        check_result(py, shape.iter().product(), &values)?;
         if conservative == Conservative::No {
-            let centers = py.detach(|| grid.centers());
+            let centers = run(py, None, move |_| Ok(grid.centers()))?;
             return self.on_grid(py, map, centers, shape);
         }
         let (per, numbers, shape) = self.quantities(py, &map, shape)?;
@@ -244,6 +249,12 @@ impl Request<'_, '_> {
     pub fn per(&self, py: Python<'_>, map: &InverseMap, values: &Values<'_>) -> PyResult<PerElement> {
         per_element(py, self.per, values, [map.n_vertices(), map.n_faces()])
     }
+}
+
+/// Refuses results at so many points for which there is no memory.
+fn check_result(py: Python<'_>, n_points: usize, values: &Values<'_>) -> PyResult<()> {
+    memory::check_numbers(py, memory::POINT, n_points)?;
+    memory::check_numbers(py, memory::RESULT, n_points.saturating_mul(values.row_len()))
 }
 
 /// The elements that values belong to, of `n` vertices and `m` faces.

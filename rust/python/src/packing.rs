@@ -12,6 +12,7 @@ use pyo3::{Borrowed, FromPyObject, IntoPyObjectExt};
 use crate::arrays::{Reals, from_array, frozen, real_table};
 use crate::errors::{bad_array, bad_option};
 use crate::indices::{index_table, labels};
+use crate::memory;
 use crate::options::choice;
 use crate::provenance::{Call, fingerprint_of, options};
 use crate::result::{ResultBase, made, restorable};
@@ -118,6 +119,7 @@ pub fn pack(
         rotation: rotate.0,
         aspect,
     };
+    memory::check(py, memory::PACKING, uv.nrows())?;
     let islands = islands(py, uv.view(), faces.view(), &labels(island_of, "island_of")?)?;
     // 2. The run
     let (uv, packing, input) = run(py, progress, move |observer| {

@@ -71,8 +71,8 @@ impl<T: Send> Observer for Remote<T> {
 /// Parameters
 /// ----------
 /// count : int
-///     The number of threads. 0 stands for as many as there are processors, or as the environment variable
-///     RAYON_NUM_THREADS says.
+///     The number of threads, at most 1024. 0 stands for as many as there are processors, or as the environment
+///     variable RAYON_NUM_THREADS says.
 ///
 /// Examples
 /// --------

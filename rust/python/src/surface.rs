@@ -13,6 +13,7 @@ use crate::arrays::{from_array, frozen, real_table};
 use crate::errors::{bad_array, to_python};
 use crate::hints::{refuse_plane, refuse_vtk};
 use crate::indices::{from_index_list, from_indices, index_table};
+use crate::memory;
 use crate::mesh_objects::mesh_parts;
 use crate::provenance::{Fingerprint, fingerprint, fingerprint_of};
 use crate::result::{Restorable, ResultBase, State, made, restorable};
@@ -328,6 +329,7 @@ pub fn cut(
 
 fn patches(py: Python<'_>, given: Given, seams: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Py<Patch>>> {
     let seams = seams.map(|seams| index_table::<2>(seams, "seams", given.n_vertices())).transpose()?;
+    memory::check(py, memory::CUT, given.n_vertices())?;
     let patches = run(py, None, move |_| {
         let surface = given.surface()?;
         match seams {

@@ -24,6 +24,11 @@ impl<'py> Values<'py> {
         self.array.shape().to_vec()
     }
 
+    /// The numbers in each row of the first axis.
+    pub fn row_len(&self) -> usize {
+        self.array.shape().iter().skip(1).product()
+    }
+
     pub fn shape_words(&self) -> String {
         shape_words(self.array.shape())
     }

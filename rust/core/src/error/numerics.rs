@@ -81,6 +81,21 @@ pub enum NumericsError {
         /// Bytes that are free.
         available: u64,
     },
+
+    /// Arrays, given or asked for, would need more memory than there is.
+    #[error(
+        "{n_numbers} numbers take {} GB of memory at least, and {} GB are free: close other programs, or \
+         pass or ask for fewer at a time",
+        in_gigabytes(*needed), in_gigabytes(*available)
+    )]
+    ArraysOutOfMemory {
+        /// The numbers in the arrays.
+        n_numbers: usize,
+        /// Bytes that they take at least, with what they are computed from.
+        needed: u64,
+        /// Bytes that are free.
+        available: u64,
+    },
 }
 
 fn in_gigabytes(bytes: u64) -> String {
@@ -96,14 +111,14 @@ impl NumericsError {
             Self::StillFolded { .. } => ErrorKind::StillFolded,
             Self::NoEmbedding { .. } => ErrorKind::NoEmbedding,
             Self::LayoutFolds { .. } => ErrorKind::LayoutFold,
-            Self::OutOfMemory { .. } => ErrorKind::OutOfMemory,
+            Self::OutOfMemory { .. } | Self::ArraysOutOfMemory { .. } => ErrorKind::OutOfMemory,
         }
     }
 
     /// The error with other numbers for the faces at fault, as where they are faces of a part of the mesh.
     pub(crate) fn with_faces(mut self, face_of: impl Fn(usize) -> usize) -> Self {
         match &mut self {
-            Self::FactorizationFailed { .. } | Self::OutOfMemory { .. } => {}
+            Self::FactorizationFailed { .. } | Self::OutOfMemory { .. } | Self::ArraysOutOfMemory { .. } => {}
             Self::NoHyperbolicMetric { faces }
             | Self::StillFolded { folded: faces, .. }
             | Self::NoEmbedding { folded: faces }
@@ -117,7 +132,9 @@ impl NumericsError {
     /// The faces at fault, where the error has any.
     pub fn elements(&self) -> Option<&Elements> {
         match self {
-            Self::FactorizationFailed { .. } | Self::OutOfMemory { .. } => None,
+            Self::FactorizationFailed { .. } | Self::OutOfMemory { .. } | Self::ArraysOutOfMemory { .. } => {
+                None
+            }
             Self::NoHyperbolicMetric { faces } | Self::LayoutFolds { faces, .. } => Some(faces),
             Self::StillFolded { folded, .. } | Self::NoEmbedding { folded } => Some(folded),
         }

@@ -154,7 +154,7 @@ pub fn register_hyperbolic(
     options.heat_tolerance = tolerance.unwrap_or(options.heat_tolerance);
     let source = Given::pair(source, SOURCE)?;
     let target = Given::pair(target, TARGET)?;
-    memory::check(py, memory::REGISTRATION, source.n_vertices() + target.n_vertices())?;
+    memory::check(py, memory::CURVES, source.n_vertices() + target.n_vertices())?;
     let source_curves = vertex_paths(source_curves, "source_curves", source.n_vertices())?;
     let target_curves = vertex_paths(target_curves, "target_curves", target.n_vertices())?;
     if repair && (source_sphere.is_some() || target_sphere.is_some()) {

@@ -16,6 +16,7 @@ use crate::arrays::{Reals, from_array, frozen, own_array, real_table};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, to_python, warning};
 use crate::indices::{from_index_list, from_indices, integer_list};
+use crate::memory;
 use crate::provenance::Call;
 use crate::record::{from_dictionary, to_dictionary};
 use crate::repair::Repaired;
@@ -390,6 +391,7 @@ impl Registration {
             )));
         }
         let out: Vec<usize> = per.axes(source).into_iter().chain(shape[axes..].iter().copied()).collect();
+        memory::check_numbers(py, memory::RESULT, out.iter().product())?;
         let finished = self.finished.clone();
         if nearest {
             let rows = run(py, None, move |_| Ok(nearest_rows(finished.correspondence(), per)))?;

@@ -130,6 +130,19 @@ impl Fronts {
         *self.panels.last().expect("one more than fronts")
     }
 
+    /// Numbers that wait on the two stacks of updates at most, where the fronts are eliminated one after the other.
+    pub(super) fn updates_len(&self) -> usize {
+        let (mut lengths, mut most) = ([0; 2], [0; 2]);
+        for (number, front) in self.fronts.iter().enumerate() {
+            let own = usize::from(front.is_odd);
+            lengths[own] += front.rows() * front.rows();
+            most[own] = most[own].max(lengths[own]);
+            lengths[1 - own] -=
+                self.children(number).map(|child| self.front(child).rows().pow(2)).sum::<usize>();
+        }
+        most[0] + most[1]
+    }
+
     /// Multiplications that a range of fronts takes.
     pub(super) fn work(&self, range: &Range<usize>) -> f64 {
         self.work[range.end] - self.work[range.start]

@@ -24,6 +24,7 @@ mod solve;
 use super::faer::{Scalar, minimum_degree};
 use crate::control::Watch;
 use crate::error::Error;
+use crate::memory;
 use crate::mesh::Vertex;
 pub(crate) use dense::Failure;
 use elimination::Elimination;
@@ -34,6 +35,9 @@ pub(super) use graph::NONE;
 #[cfg(test)]
 pub(crate) use kernels::processor;
 pub(super) use numeric::Place;
+
+/// Bytes of a number.
+const NUMBER: u64 = 8;
 
 /// The elimination order of the nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,7 +77,8 @@ impl Analysis {
     ///
     /// # Errors
     /// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where the mesh is too large
-    /// for 32-bit indices.
+    /// for 32-bit indices, and [`NumericsError::ArraysOutOfMemory`](crate::NumericsError::ArraysOutOfMemory) where
+    /// there is no memory for the factor.
     pub(crate) fn new(
         n_vertices: usize,
         faces: &[[Vertex; 3]],
@@ -124,8 +129,15 @@ impl Symbolic {
         };
         let tree = Elimination::new(&graph, &order, dofs);
         let fronts = Fronts::new(&graph, &tree, dofs, cliques);
+        memory::require_for_numbers(NUMBER, numbers_of_a_step(&fronts))?;
         Ok(Self { fronts, unknowns: unknowns_in_order(&tree.order, dofs) })
     }
+}
+
+/// Numbers that a Newton step takes with its factorization: a little more than was measured on squares, where all that
+/// a step keeps is more than twice the factor, and half as much again as on strips.
+fn numbers_of_a_step(fronts: &Fronts) -> usize {
+    fronts.factor_len() * 11 / 4 + fronts.updates_len()
 }
 
 /// From this number of nodes on, nested dissection pays for itself within a few factorizations.

@@ -16,8 +16,8 @@ ADDON = ROOT / "addon"
 # The rooms of the crate, lowest first: a room may use those of lower rows only, and itself.
 CORE_ROOMS = (
     {"clock"},
-    {"vector", "error", "control", "parallel", "sets", "memory"},
-    {"arrays"},
+    {"vector", "error", "control", "parallel", "sets"},
+    {"arrays", "memory"},
     {"record"},
     {"mesh", "options"},
     {"sparse", "distortion", "codomain", "location", "packing"},

@@ -14,7 +14,7 @@ use crate::errors::to_python;
 pub const MAP: u64 = 2300;
 
 /// Bytes that a registration takes for each vertex of both surfaces.
-pub const REGISTRATION: u64 = 800;
+pub const REGISTRATION: u64 = 900;
 
 /// Bytes that a registration by curves takes for each vertex of both surfaces.
 pub const CURVES: u64 = 4600;

@@ -88,7 +88,7 @@ def pair(make):
 
     def prepared(side):
         [one] = make(side)
-        marks = [one.n_vertices // part for part in (2, 3, 5)]
+        marks = [one.n_vertices // part + side // 3 for part in (2, 4, 5)]
         return [one, one, marks]
 
     return prepared

@@ -49,6 +49,9 @@ pub const POINT: u64 = 120;
 /// Bytes that a number of a result takes.
 pub const RESULT: u64 = 8;
 
+/// Bytes that a number of a result takes that is interpolated smoothly, with the gradients.
+pub const SMOOTH: u64 = 36;
+
 /// Refuses a run for whose vertices there is no memory.
 pub fn check(py: Python<'_>, bytes_per_vertex: u64, n_vertices: usize) -> PyResult<()> {
     raised(py, require_for_vertices(bytes_per_vertex, n_vertices))

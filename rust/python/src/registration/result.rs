@@ -391,7 +391,8 @@ impl Registration {
             )));
         }
         let out: Vec<usize> = per.axes(source).into_iter().chain(shape[axes..].iter().copied()).collect();
-        memory::check_numbers(py, memory::RESULT, out.iter().product())?;
+        let bytes = if smooth { memory::SMOOTH } else { memory::RESULT };
+        memory::check_numbers(py, bytes, out.iter().product())?;
         let finished = self.finished.clone();
         if nearest {
             let rows = run(py, None, move |_| Ok(nearest_rows(finished.correspondence(), per)))?;
@@ -452,6 +453,7 @@ impl Registration {
             Some(pieces) => integer_list(pieces, "pieces", "of shape (k,), one number per point")?,
             None => vec![-1; points.nrows()],
         };
+        memory::check_numbers(py, memory::POINT, points.nrows())?;
         let finished = self.finished.clone();
         let places = run(py, None, move |_| {
             authalic::follow(finished.correspondence(), points.view(), aview1(&pieces), rigid_size)

@@ -120,8 +120,9 @@ def test_one_and_several_threads_and_another_call_give_the_same_bits(run_python)
 
 
 INTERRUPT = """
-import json, signal, threading
+import json, signal, threading, authalic
 from api import curves, effort, meshes
+authalic.set_threads(effort.THREADS)
 # a shell's background job inherits SIGINT ignored, and Python then installs no handler of its own
 signal.signal(signal.SIGINT, signal.default_int_handler)
 pair = curves.identical(meshes.bumpy_ball(6), curves.arcs(5))

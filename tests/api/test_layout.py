@@ -681,6 +681,7 @@ def test_one_and_several_threads_give_the_same_bits(run_python):
 INTERRUPT = """
 import json, signal, threading, authalic
 from api import effort, meshes
+authalic.set_threads(effort.THREADS)
 # a shell's background job inherits SIGINT ignored, and Python then installs no handler of its own
 signal.signal(signal.SIGINT, signal.default_int_handler)
 mesh = meshes.bumpy_ball(7)

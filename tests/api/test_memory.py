@@ -157,4 +157,4 @@ def test_a_sequence_that_lies_about_its_length_is_read_to_its_end():
 
 def test_the_message_has_the_numbers(run_python):
     code = LIMITED.replace("print(name, error.kind", "print(error); print(name, error.kind")
-    assert "160000 vertices take 0.4 GB of memory at least, and 0." in run_python(code)
+    assert "160000 vertices take 518 MB of memory at least, and 1" in run_python(code)

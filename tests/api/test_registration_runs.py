@@ -155,6 +155,7 @@ import json, signal, threading, authalic
 import numpy as np
 from api import effort, meshes, pairs
 from api.test_runs import bumpy_square
+authalic.set_threads(effort.THREADS)
 # a shell's background job inherits SIGINT ignored, and Python then installs no handler of its own
 signal.signal(signal.SIGINT, signal.default_int_handler)
 mesh = {mesh}

@@ -285,6 +285,7 @@ INTERRUPT = """
 import json, signal, threading, authalic
 from api import effort, meshes
 from api.test_runs import bumpy_square
+authalic.set_threads(effort.THREADS)
 # a shell's background job inherits SIGINT ignored, and Python then installs no handler of its own
 signal.signal(signal.SIGINT, signal.default_int_handler)
 mesh = {mesh}

@@ -270,7 +270,7 @@ def test_a_false_answer_cancels_soon(patience):
             refused.append(effort.spent())
         return not refused
 
-    with pytest.raises(authalic.SolverError, match="cancelled") as caught:
+    with effort.counted(), pytest.raises(authalic.SolverError, match="cancelled") as caught:
         authalic.seams(mesh, target=1.1, progress=progress)
     assert effort.spent() - refused[0] < 0.3
     assert (caught.value.kind, len(refused)) == ("cancelled", 1)
@@ -291,6 +291,7 @@ import signal, threading, authalic
 from api import effort, meshes
 mesh = meshes.bumpy_ball(6)
 began = []
+authalic.set_threads(effort.THREADS)
 # a shell's background job ignores it
 signal.signal(signal.SIGINT, signal.default_int_handler)
 def interrupt():

@@ -18,9 +18,9 @@ const KEPT: u64 = 150_000_000;
 /// # Errors
 /// [`NumericsError::OutOfMemory`] where less is free.
 pub fn require_for_vertices(bytes: u64, n_vertices: usize) -> Result<(), NumericsError> {
-    let needed = bytes.saturating_mul(n_vertices as u64);
-    lacking(needed)
-        .map_or(Ok(()), |available| Err(NumericsError::OutOfMemory { n_vertices, needed, available }))
+    lacking(bytes.saturating_mul(n_vertices as u64)).map_or(Ok(()), |Lack { needed, available }| {
+        Err(NumericsError::OutOfMemory { n_vertices, needed, available })
+    })
 }
 
 /// Refuses arrays of `n_numbers` in all that take so many bytes for each, with what they are computed from.
@@ -28,17 +28,24 @@ pub fn require_for_vertices(bytes: u64, n_vertices: usize) -> Result<(), Numeric
 /// # Errors
 /// [`NumericsError::ArraysOutOfMemory`] where less is free.
 pub fn require_for_numbers(bytes: u64, n_numbers: usize) -> Result<(), NumericsError> {
-    let needed = bytes.saturating_mul(n_numbers as u64);
-    lacking(needed)
-        .map_or(Ok(()), |available| Err(NumericsError::ArraysOutOfMemory { n_numbers, needed, available }))
+    lacking(bytes.saturating_mul(n_numbers as u64)).map_or(Ok(()), |Lack { needed, available }| {
+        Err(NumericsError::ArraysOutOfMemory { n_numbers, needed, available })
+    })
 }
 
-/// The bytes that are free, where they are fewer than needed and kept.
-fn lacking(needed: u64) -> Option<u64> {
-    if needed < LITTLE {
+/// Bytes that are needed, and the fewer that are free.
+struct Lack {
+    needed: u64,
+    available: u64,
+}
+
+/// The lack of so many bytes and those that are kept, where there is one.
+fn lacking(bytes: u64) -> Option<Lack> {
+    if bytes < LITTLE {
         return None;
     }
-    available().filter(|&available| available < needed.saturating_add(KEPT))
+    let (needed, available) = (bytes.saturating_add(KEPT), available()?);
+    (available < needed).then_some(Lack { needed, available })
 }
 
 /// The bytes that this process can still have, where the system says so.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Whether there is memory for a run: asked before it starts, because a program that lacks it midway is ended.
 //!
-//! What a run takes was measured (`scripts/bench memory`). The figures here are a little above that, but for maps: what
-//! they take beyond the figure here depends on their factorizations, which ask again once their size is known.
+//! What a run takes was measured (`scripts/bench memory`). The figures here are a little above that for large surfaces,
+//! but for maps: what they take beyond the figure here depends on their factorizations, which ask again once their size
+//! is known.
 
 use authalic::memory::{require_for_numbers, require_for_vertices};
 use authalic::{Error, NumericsError};
@@ -14,7 +15,7 @@ use crate::errors::to_python;
 pub const MAP: u64 = 2300;
 
 /// Bytes that a registration takes for each vertex of both surfaces.
-pub const REGISTRATION: u64 = 900;
+pub const REGISTRATION: u64 = 950;
 
 /// Bytes that a registration by curves takes for each vertex of both surfaces.
 pub const CURVES: u64 = 4600;

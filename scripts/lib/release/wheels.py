@@ -17,7 +17,7 @@ from release.platforms import FREE_THREADED, Platform, named
 from shell import ROOT, CommandFailed, Unavailable, run, tail
 
 _INLINED = 150
-"""The size of functions that are inlined. With LLVM's own 225 a zip is 3 % larger, and no run is faster."""
+"""The size of functions that are inlined. With LLVM's own 225 zips are 3 % larger, and runs hardly faster."""
 _NO_GIT = "#!/bin/sh\necho 'a build must not need git' >&2\nexit 127\n"
 
 

@@ -69,14 +69,14 @@ pub enum NumericsError {
 
     /// A run would need more memory than there is.
     #[error(
-        "{n_vertices} vertices take {} GB of memory at least, and {} GB are free: close other programs, or \
+        "{n_vertices} vertices take {} of memory at least, and {} are free: close other programs, or \
          map a coarser mesh",
-        in_gigabytes(*needed), in_gigabytes(*available)
+        in_words(*needed), in_words(*available)
     )]
     OutOfMemory {
         /// The vertices of all surfaces of the run.
         n_vertices: usize,
-        /// Bytes that the run takes at least.
+        /// Bytes that the run takes at least, with what the process keeps for itself.
         needed: u64,
         /// Bytes that are free.
         available: u64,
@@ -84,22 +84,23 @@ pub enum NumericsError {
 
     /// Arrays, given or asked for, would need more memory than there is.
     #[error(
-        "{n_numbers} numbers take {} GB of memory at least, and {} GB are free: close other programs, or \
+        "{n_numbers} numbers take {} of memory at least, and {} are free: close other programs, or \
          pass or ask for fewer at a time",
-        in_gigabytes(*needed), in_gigabytes(*available)
+        in_words(*needed), in_words(*available)
     )]
     ArraysOutOfMemory {
         /// The numbers in the arrays.
         n_numbers: usize,
-        /// Bytes that they take at least, with what they are computed from.
+        /// Bytes that they take at least, with what they are computed from and what the process keeps for itself.
         needed: u64,
         /// Bytes that are free.
         available: u64,
     },
 }
 
-fn in_gigabytes(bytes: u64) -> String {
-    format!("{:.1}", bytes as f64 / 1e9)
+fn in_words(bytes: u64) -> String {
+    let bytes = bytes as f64;
+    if bytes < 1e9 { format!("{:.0} MB", bytes / 1e6) } else { format!("{:.1} GB", bytes / 1e9) }
 }
 
 impl NumericsError {

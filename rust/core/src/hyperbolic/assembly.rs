@@ -180,14 +180,15 @@ impl Assembly {
         between: Between<'_, '_>,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) {
+    ) -> Result<(), Error> {
         let start = self.given_locations();
-        let (locations, status) = between.lower(start.clone(), history, observer);
+        let (locations, status) = between.lower(start.clone(), history, observer)?;
         self.between = Some(status);
         if locations != start {
             self.locations = locations.into_iter().map(Some).collect();
             self.inverse.fill(None);
         }
+        Ok(())
     }
 
     fn given_locations(&self) -> Vec<Location> {

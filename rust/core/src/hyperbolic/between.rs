@@ -5,6 +5,7 @@ use super::features::curves::LandmarkCurves;
 use super::options::HyperbolicOptions;
 use crate::codomain::CanonicalDomain;
 use crate::control::{History, Observer, Status};
+use crate::error::Error;
 use crate::location::{Location, points_on};
 use crate::mesh::{TriangleMesh, Vertex};
 use crate::registration::Signals;
@@ -30,7 +31,7 @@ impl Between<'_, '_> {
         start: Vec<Location>,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Vec<Location>, Status) {
+    ) -> Result<(Vec<Location>, Status), Error> {
         let [source, target] = self.meshes;
         let mut signals = self.signals;
         if self.options.position_weight > 0.0 {
@@ -54,7 +55,7 @@ impl Between<'_, '_> {
             is_coarse: false,
             face_energy: self.options.face_energy(),
         };
-        let descended = descend(&problem, start, history, observer);
-        (descended.locations, descended.status)
+        let descended = descend(&problem, start, history, observer)?;
+        Ok((descended.locations, descended.status))
     }
 }

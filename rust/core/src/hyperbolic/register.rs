@@ -94,7 +94,7 @@ pub fn register_hyperbolic(
         let target_in_domain = &placement.target;
         let between = Between { meshes, target_points, target_in_domain, curves, signals, options };
         let mut phase = Phase { whole: observer, from: 0.95, to: 1.0 };
-        assembly.lower(between, &mut history, &mut phase);
+        assembly.lower(between, &mut history, &mut phase)?;
     }
     // 6. Figures
     let surfaces = [source_surface, target_surface];

@@ -7,6 +7,7 @@ use super::options::RegistrationOptions;
 use super::surface::{Descended, Pull, Start, SurfaceProblem, descend};
 use crate::codomain::CanonicalDomain;
 use crate::control::{History, Observer, Status};
+use crate::error::Error;
 use crate::location::{Location, points_on};
 use crate::mesh::{TriangleMesh, Vertex};
 use crate::parallel;
@@ -43,12 +44,15 @@ pub(super) struct Lowered {
 
 impl Between<'_, '_> {
     /// The surfaces after the descent.
+    ///
+    /// # Errors
+    /// As [`descend`].
     pub(super) fn lower(
         self,
         map: Vec<Location>,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Lowered {
+    ) -> Result<Lowered, Error> {
         let Self {
             source, target, target_points, domain, target_in_domain, options, start, is_coarse, ..
         } = self;
@@ -72,9 +76,9 @@ impl Between<'_, '_> {
             is_coarse,
             face_energy,
         };
-        let Descended { locations, energy, status } = descend(&problem, map, history, observer);
+        let Descended { locations, energy, status } = descend(&problem, map, history, observer)?;
         let registered = in_domain(&locations, target.faces(), target_in_domain, domain);
-        Lowered { locations, registered, energy, status }
+        Ok(Lowered { locations, registered, energy, status })
     }
 
     /// The exact landmarks of the source, which stay, and the soft ones, which are pulled.

@@ -177,7 +177,7 @@ impl Pair<'_, '_> {
             let mut phase = Phase { whole: observer, from: 0.0, to: SHARE_OF_DOMAIN };
             let laid = self.laid(&starts[k], history, &mut phase)?;
             let mut phase = Phase { whole: observer, from: SHARE_OF_DOMAIN, to: 1.0 };
-            Ok(self.lowered(laid, history, &mut phase))
+            self.lowered(laid, history, &mut phase)
         };
         let rank =
             |laid: &Laid| Rank { n_apart: self.n_apart(laid), energy: laid.energy, status: laid.status };
@@ -258,9 +258,9 @@ impl Pair<'_, '_> {
     }
 
     /// After the descent between the surfaces.
-    fn lowered(&self, laid: Laid, history: &mut History, observer: &mut dyn Observer) -> Laid {
+    fn lowered(&self, laid: Laid, history: &mut History, observer: &mut dyn Observer) -> Result<Laid, Error> {
         if laid.status == Status::Cancelled {
-            return laid;
+            return Ok(laid);
         }
         let Laid { maps, mut met, on_rim, locations, .. } = laid;
         let between = Between {
@@ -275,9 +275,10 @@ impl Pair<'_, '_> {
             start: Start::Domain,
             is_coarse: false,
         };
-        let Lowered { locations, registered, energy, status } = between.lower(locations, history, observer);
+        let Lowered { locations, registered, energy, status } =
+            between.lower(locations, history, observer)?;
         met.source = registered;
-        Laid { maps, met, on_rim, locations, energy, status }
+        Ok(Laid { maps, met, on_rim, locations, energy, status })
     }
 
     /// The number of exact pairs of landmarks that do not meet.

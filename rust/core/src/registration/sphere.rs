@@ -219,7 +219,7 @@ impl Pair<'_, '_> {
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.5 };
         if let Some(laid) = self.laid_coarse_to_fine(history, &mut phase)? {
             let mut phase = Phase { whole: observer, from: 0.5, to: 1.0 };
-            return Ok(self.lowered(laid, Start::Coarse, history, &mut phase));
+            return self.lowered(laid, Start::Coarse, history, &mut phase);
         }
         let with_extremities = with_extremities(self.meshes, self.landmarks, observer)?;
         let starts = self.starts(with_extremities.as_ref());
@@ -228,7 +228,7 @@ impl Pair<'_, '_> {
             let mut phase = Phase { whole: observer, from: 0.0, to: SHARE_OF_DOMAIN };
             let laid = self.laid(*angle_weight, landmarks, history, &mut phase)?;
             let mut phase = Phase { whole: observer, from: SHARE_OF_DOMAIN, to: 1.0 };
-            Ok(self.lowered(laid, Start::Domain, history, &mut phase))
+            self.lowered(laid, Start::Domain, history, &mut phase)
         };
         let rank =
             |laid: &Laid| Rank { n_apart: self.n_apart(laid), energy: laid.energy, status: laid.status };
@@ -286,10 +286,16 @@ impl Pair<'_, '_> {
     }
 
     /// After the descent between the surfaces.
-    fn lowered(&self, laid: Laid, start: Start, history: &mut History, observer: &mut dyn Observer) -> Laid {
+    fn lowered(
+        &self,
+        laid: Laid,
+        start: Start,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<Laid, Error> {
         let Laid { registered: [_, target_registered], locations, status, .. } = &laid;
         if *status == Status::Cancelled {
-            return laid;
+            return Ok(laid);
         }
         let between = Between {
             source: self.meshes[0],
@@ -304,9 +310,9 @@ impl Pair<'_, '_> {
             is_coarse: self.is_coarse,
         };
         let Lowered { locations, registered, energy, status } =
-            between.lower(locations.clone(), history, observer);
+            between.lower(locations.clone(), history, observer)?;
         let [_, target_registered] = laid.registered;
-        Laid { registered: [registered, target_registered], locations, energy, status, ..laid }
+        Ok(Laid { registered: [registered, target_registered], locations, energy, status, ..laid })
     }
 
     /// The number of exact pairs of landmarks that do not meet; on coarse meshes they must meet exactly.

@@ -33,7 +33,8 @@ impl Cholesky {
     /// The rows are vertices of the mesh, ascending, and its elimination order is used if it has one.
     ///
     /// # Errors
-    /// [`NumericsError::FactorizationFailed`] where the matrix is too large for 32-bit indices.
+    /// [`NumericsError::FactorizationFailed`] where the matrix is too large for 32-bit indices,
+    /// [`NumericsError::ArraysOutOfMemory`] where there is no memory for its factor.
     pub(crate) fn analyze_on(mesh: &TriangleMesh, upper: &CsMat<f64>) -> Result<Self, Error> {
         let order = if mesh.in_elimination_order() { Order::AsGiven } else { Order::Sparse };
         Self::analyze_in(order, upper)
@@ -46,6 +47,7 @@ impl Cholesky {
         };
         let entries: Vec<[u32; 3]> = upper.iter().map(entry).collect();
         let symbolic = Symbolic::new(&entries, &vec![1; upper.cols()], order)?;
+        symbolic.require_memory(1.0)?;
         let factor = Factor::of(&symbolic);
         Ok(Self { symbolic, factor })
     }

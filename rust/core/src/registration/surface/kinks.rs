@@ -171,8 +171,9 @@ mod tests {
         energy: &'s SurfaceEnergy<'_>,
         start: &[Location],
     ) -> impl Iterator<Item = (Vertex, Vec<Placed>)> + 's {
-        let descended = descend(problem, start.to_vec(), &mut History::start(), &mut Silent).locations;
-        let map: Vec<Placed> = descended.into_iter().map(|location| energy.target.placed(location)).collect();
+        let descended = descend(problem, start.to_vec(), &mut History::start(), &mut Silent).unwrap();
+        let map: Vec<Placed> =
+            descended.locations.into_iter().map(|location| energy.target.placed(location)).collect();
         let edges = Vertex::all(map.len()).flat_map(|vertex| [0, 1, 2].map(|k| (vertex, k)));
         edges.filter_map(move |(vertex, k)| {
             let mut map = map.clone();

@@ -36,6 +36,7 @@ pub(crate) use problem::{Pull, Start, SurfaceProblem};
 
 use crate::arrays::from_vectors;
 use crate::control::{History, Observer, Status, Watch};
+use crate::error::Error;
 use crate::location::{Location, points_on};
 use crate::mesh::Vertex;
 use crate::parallel;
@@ -108,12 +109,15 @@ pub(crate) struct Descended {
 ///
 /// The boundary of a disk slides along the target's. Faces that are folded in the domain at the start stay as they are
 /// and do not count.
+///
+/// # Errors
+/// As [`Analysis::new`].
 pub(crate) fn descend(
     problem: &SurfaceProblem<'_>,
     start: Vec<Location>,
     history: &mut History,
     observer: &mut dyn Observer,
-) -> Descended {
+) -> Result<Descended, Error> {
     // 1. An isometry is the minimum
     let stages: &[Stage] = match problem.start {
         Start::Domain => &STAGES,
@@ -124,16 +128,14 @@ pub(crate) fn descend(
     let map: Vec<Placed> = parallel::map(start.len(), |vertex| energy.target.placed(start[vertex]));
     let is_pulled = !problem.pulls.is_empty() || problem.signals.width > 0;
     if !is_pulled && energy.mean_distortion(&map) < 1.0 + ISOMETRY {
-        return Descended { locations: start, energy: 1.0, status: Status::Converged };
+        return Ok(Descended { locations: start, energy: 1.0, status: Status::Converged });
     }
     // 2. Which vertices may move, and the pattern of their system
     let folded = energy.leave_out_folded(&map);
     let motions = motions(problem, &folded, &map);
     let dofs: Vec<u8> = motions.iter().map(|motion| motion.n_unknowns()).collect();
     let faces = problem.source.faces();
-    let Ok(analysis) = Analysis::new(start.len(), faces, &dofs, Order::Sparse) else {
-        return Descended { locations: start, energy: f64::INFINITY, status: Status::Stalled };
-    };
+    let analysis = Analysis::new(start.len(), faces, &dofs, Order::Sparse)?;
     let mut factor = Factor::new(&analysis);
     let colors = Colors::new(problem.source, &motions);
     // 3. Stages, from one that smooths the way to one that only keeps folds away
@@ -167,7 +169,7 @@ pub(crate) fn descend(
     energy.subdivide(&map);
     let value = energy.value(&map);
     let locations = map.into_iter().map(|placed| placed.location).collect();
-    Descended { locations, energy: value, status }
+    Ok(Descended { locations, energy: value, status })
 }
 
 /// How each vertex moves: not at all where it is held or belongs to a face folded at the start; along the boundary, if
@@ -283,7 +285,7 @@ mod tests {
     use crate::mesh::geometry::triangle;
 
     fn descended(problem: &SurfaceProblem<'_>, start: &[Location]) -> (Vec<Location>, Status) {
-        let descended = descend(problem, start.to_vec(), &mut History::start(), &mut Silent);
+        let descended = descend(problem, start.to_vec(), &mut History::start(), &mut Silent).unwrap();
         (descended.locations, descended.status)
     }
 
@@ -374,7 +376,7 @@ mod tests {
             left > 0
         };
         let Descended { locations: map, status, .. } =
-            descend(&sample.problem(), sample.start.clone(), &mut History::start(), &mut observer);
+            descend(&sample.problem(), sample.start.clone(), &mut History::start(), &mut observer).unwrap();
         assert_eq!(status, Status::Cancelled);
         assert_eq!(n_folded(&sample, &map), 0);
         assert!(mean_distortion(&sample, &map) < mean_distortion(&sample, &sample.start));

@@ -36,8 +36,9 @@ pub(super) use graph::NONE;
 pub(crate) use kernels::processor;
 pub(super) use numeric::Place;
 
-/// Bytes of a number.
-const NUMBER: u64 = 8;
+/// What a Newton step keeps, its factor among it, in factors: a little more than was measured on squares, and half as
+/// much again as on strips.
+const FACTORS_OF_A_STEP: f64 = 2.75;
 
 /// The elimination order of the nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,7 +98,9 @@ impl Analysis {
             }
         }
         let cliques: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|vertex| node_of[vertex])).collect();
-        Ok(Self { first_unknown, symbolic: Symbolic::new(&cliques, &node_dofs, order)? })
+        let symbolic = Symbolic::new(&cliques, &node_dofs, order)?;
+        symbolic.require_memory(FACTORS_OF_A_STEP)?;
+        Ok(Self { first_unknown, symbolic })
     }
 
     /// The number of unknowns.
@@ -129,15 +132,17 @@ impl Symbolic {
         };
         let tree = Elimination::new(&graph, &order, dofs);
         let fronts = Fronts::new(&graph, &tree, dofs, cliques);
-        memory::require_for_numbers(NUMBER, numbers_of_a_step(&fronts))?;
         Ok(Self { fronts, unknowns: unknowns_in_order(&tree.order, dofs) })
     }
-}
 
-/// Numbers that a Newton step takes with its factorization: a little more than was measured on squares, where all that
-/// a step keeps is more than twice the factor, and half as much again as on strips.
-fn numbers_of_a_step(fronts: &Fronts) -> usize {
-    fronts.factor_len() * 11 / 4 + fronts.updates_len()
+    /// Refuses factorizations for which, with as much as so many factors, there is no memory.
+    ///
+    /// # Errors
+    /// [`NumericsError::ArraysOutOfMemory`](crate::NumericsError::ArraysOutOfMemory) with the numbers.
+    pub(super) fn require_memory(&self, factors: f64) -> Result<(), Error> {
+        let kept = (self.fronts.factor_len() as f64 * factors) as usize;
+        Ok(memory::require_for_numbers(size_of::<f64>() as u64, kept + self.fronts.updates_len())?)
+    }
 }
 
 /// From this number of nodes on, nested dissection pays for itself within a few factorizations.

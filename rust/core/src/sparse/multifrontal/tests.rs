@@ -174,6 +174,26 @@ fn indefinite_singular_and_broken_matrices_are_refused() {
 }
 
 #[test]
+fn the_stacks_of_updates_are_as_long_as_foreseen() {
+    for size in [3, 12, 30] {
+        let (n, faces) = grid(size);
+        let fronts = analyzed(n, &faces, &vec![2; n], Order::Sparse).symbolic.fronts;
+        // each front in turn: its update is put on one stack, and those of its children are taken off the other
+        let (mut stacks, mut most) = ([Vec::<usize>::new(), Vec::new()], [0, 0]);
+        for front in 0..fronts.len() {
+            let own = usize::from(fronts.front(front).is_odd);
+            stacks[own].push(fronts.front(front).rows().pow(2));
+            most[own] = most[own].max(stacks[own].iter().sum());
+            for child in fronts.children(front) {
+                assert_eq!(stacks[1 - own].pop(), Some(fronts.front(child).rows().pow(2)), "{size}");
+            }
+        }
+        assert_eq!(fronts.updates_len(), most[0] + most[1]);
+        assert!(fronts.updates_len() > 0);
+    }
+}
+
+#[test]
 fn a_factorization_can_be_cancelled_and_done_again() {
     let (n, faces) = grid(400);
     let analysis = analyzed(n, &faces, &vec![2; n], Order::Sparse);

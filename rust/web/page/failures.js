@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // What the page says where the core itself has failed; the module is of no more use then.
 
-const NO_MEMORY = /memory|allocation|capacity overflow|invalid (typed )?array (buffer )?length/i;
+// Not any "memory": a fault may be an access out of bounds, or come from a file of that name.
+const NO_MEMORY =
+  /memory allocation of|unable to grow|allocation failed|capacity overflow|out of memory|invalid (typed )?array (buffer )?length/i;
 
 // The words on an exception, and on the panic before it, if any. Without memory the core stops without a panic.
 export function wordsOfFailure(panic, error) {

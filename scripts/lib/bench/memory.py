@@ -77,7 +77,7 @@ def ball(side):
     return [authalic.Surface(vertices * (1 + 0.2 * np.sin(3 * x) * np.cos(2 * y + z))[:, None], faces)]
 
 
-def round_(side):
+def radial(side):
     """The sphere, and the directions of its vertices as a map."""
     [one] = ball(side)
     return [one, one.vertices / np.linalg.norm(one.vertices, axis=1)[:, None]]
@@ -121,7 +121,7 @@ CALLS = {
     "`Surface`": Call(lambda side: list(square(side)), authalic.Surface),
     "`Surface.cut`, without seams": Call(surface, lambda one: one.cut()),
     "`distortion`": Call(flat, authalic.distortion),
-    "`stretch_hessian`": Call(round_, authalic.stretch_hessian),
+    "`stretch_hessian`": Call(radial, authalic.stretch_hessian),
     "`pack`, one island": Call(
         lambda side: [square(side)[0][:, :2], square(side)[1]],
         lambda uv, faces: authalic.pack(uv, faces, np.zeros(len(faces), int)),
@@ -178,6 +178,8 @@ def main(words=None):
     parser.add_argument("target", type=Path)
     parser.add_argument("--parts", nargs="+", default=[])
     options = parser.parse_args(words)
+    if sys.platform != "linux":
+        parser.error("the most memory of a call is read from /proc, which only Linux has")
     report = Report(options.target)
     report.line(f"Memory, authalic {authalic.__version__}, {machine()}.")
     report.section(
@@ -197,7 +199,11 @@ def measured(name, side, most):
         return ""
     command = [sys.executable, "-m", "bench.memory", "--child", name, str(side)]
     answer = subprocess.run(command, capture_output=True, text=True, check=False)
-    return f"{int(answer.stdout):,}" if answer.returncode == 0 else answer.stderr.strip().splitlines()[-1]
+    if answer.returncode == 0:
+        return f"{int(answer.stdout):,}"
+    # a process that the system ends says nothing
+    said = answer.stderr.strip().splitlines()
+    return said[-1] if said else f"ended with code {answer.returncode}"
 
 
 def child(name, side):

@@ -295,11 +295,9 @@ def test_a_cancelled_search_marks_nothing() -> None:
     obj = meshes.icosphere(3)
     job = exact_job().start()
     time.sleep(0.2)
-    started = time.thread_time()
     job.cancel()
     with pytest.raises(part("jobs.job").Cancelled):
         job.apply()
-    assert time.thread_time() - started < 0.2
     assert not marked(obj)
 
 

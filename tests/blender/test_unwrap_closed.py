@@ -126,11 +126,10 @@ def test_esc_is_heard_while_seams_are_sought_in_place_of_a_layout() -> None:
     while "seams" not in job.poll()[2]:
         assert job.poll()[0], "the search is over before it could be cancelled"
         time.sleep(0.02)
-    before, cancelled = meshes.uv(obj), time.thread_time()
+    before = meshes.uv(obj)
     job.cancel()
     with pytest.raises(part("jobs.job").Cancelled):
         job.apply()
-    assert time.thread_time() - cancelled < 0.2
     job._thread.join(5)
     assert not job._thread.is_alive()
     assert (meshes.uv(obj) == before).all()

@@ -158,6 +158,7 @@ def test_wrong_words_are_data_too_with_json(run):
     "words",
     [
         ["sphere", "ball.obj", "out.obj", "--threads", 10**20],
+        ["sphere", "ball.obj", "out.obj", "--threads", 1025],
         ["sphere", "ball.obj", "out.obj", "--max-iterations", 10**20],
         ["unwrap", "ball.obj", "out.obj", "--max-islands", 10**20],
         ["repair", "ball.obj", "out.obj", "--close-holes", 10**20],

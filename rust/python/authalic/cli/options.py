@@ -13,7 +13,9 @@ from .frame import Frame
 
 Command = Callable[..., Any]
 
-_MOST_THREADS = 4096
+_MOST_THREADS = 1024
+"""The core starts no more."""
+
 MOST = 2**31 - 1
 """Of other numbers that are options: far beyond any use, and within what the library takes."""
 

@@ -15,6 +15,7 @@ import zlib
 import numpy as np
 import pytest
 from api import meshes
+from api.archives import npy
 
 from authalic.io import FileError, MeshData, read_mesh, read_values, write_mesh
 
@@ -111,6 +112,30 @@ def test_elements_without_columns_are_passed_over(tmp_path):
         assert read_mesh(path).faces.tolist() == [[0, 1, 2]]
 
 
+@pytest.mark.parametrize("title", ["dimensions in cm units", "dimensions 9999 9999 9999", "no POLYDATA"])
+def test_titles_of_vtk_are_only_titles(title, tmp_path):
+    pytest.importorskip("meshio")
+    text = vtk("CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n", kind="UNSTRUCTURED_GRID")
+    (tmp_path / "a.vtk").write_text(text.replace("\nx\n", f"\n{title}\n"))
+    assert read_mesh(tmp_path / "a.vtk").faces.tolist() == [[0, 1, 2]]
+
+
+def test_sizes_of_a_grid_are_checked_wherever_they_are(tmp_path):
+    pytest.importorskip("meshio")
+    for between in ("FIELD FieldData 1\nTIME 1 1 double\n0\n", "ORIGIN 0 0 0\nSPACING 1 1 1\n"):
+        rest = f"{between}DIMENSIONS 3000 3000 1000\n"
+        (tmp_path / "a.vtk").write_text(vtk(rest, kind="STRUCTURED_POINTS", points=""))
+        with pytest.raises(FileError, match="points of a grid: it states the number 9000000000,"):
+            read_mesh(tmp_path / "a.vtk")
+
+
+@pytest.mark.parametrize(("name", "text"), [("a.obj", "{0}f 1 2 3\n"), ("a.off", "OFF 3 1 0\n{1}3 0 1 2\n")])
+def test_a_byte_order_mark_is_no_part_of_the_text(name, text, tmp_path):
+    (tmp_path / name).write_text(text.format(OBJ, POINTS), encoding="utf-8-sig")
+    mesh = read_mesh(tmp_path / name)
+    assert np.array_equal(mesh.vertices, TRIANGLE) and mesh.faces.tolist() == [[0, 1, 2]]
+
+
 OBJ = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 
 
@@ -120,7 +145,7 @@ OBJ = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
         (f"{OBJ}vt 0 0\nf 1/9 2/9 3/9\n", "line 5 names UV point 9, but there is 1 UV point"),
         (f"{OBJ}vt 0 0\nvt 1 0\nf 1/1 2/1 3/1\nf 1/1 2/3 3/1\n", "line 7 names UV point 3, but there are 2"),
         (f"{OBJ}f 1 2 4294967296\n", "line 4 names vertex 4294967296, but there are 3 vertices"),
-        (f"{OBJ}f 1 2 {10**23}\n", "line 4 names vertex of more than 20 digits, but there are 3"),
+        (f"{OBJ}f 1 2 {10**23}\n", "line 4 names vertex 10000000000000000000…, but there are 3"),
         (f"{OBJ}vt\nf 1 2 3\n", "line 4 cannot be read: 'vt'"),
         ("v 1_0 0 0\n", "line 1 cannot be read: 'v 1_0 0 0'"),
         (f"{OBJ}f 1 2 0_3\n", "line 4 cannot be read: 'f 1 2 0_3'"),
@@ -234,6 +259,24 @@ def test_a_glb_file_reads_files_beside_it_only(tmp_path):
         read_mesh(tmp_path / "inner" / "mesh.glb")
 
 
+@pytest.mark.parametrize("extension", ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "NONE_such"])
+def test_gltf_files_that_require_an_unknown_extension_are_refused_by_its_name(extension, tmp_path):
+    pytest.importorskip("trimesh")
+    (tmp_path / "data.bin").write_bytes(TRIANGLE.tobytes())
+    allowed = ["KHR_materials_unlit", "KHR_texture_transform"]
+    for name in ("a.gltf", "a.glb"):
+        for required in ([], allowed, [*allowed, extension]):
+            text = json.dumps({**gltf("data.bin"), "extensionsRequired": required}).encode()
+            text += b" " * (-len(text) % 4)
+            head = b"glTF" + struct.pack("<III", 2, 20 + len(text), len(text)) + b"JSON"
+            (tmp_path / name).write_bytes(head + text if name == "a.glb" else text)
+            if extension in required:
+                with pytest.raises(FileError, match=f"requires the extension '{extension}', which is not"):
+                    read_mesh(tmp_path / name)
+            else:
+                assert np.array_equal(read_mesh(tmp_path / name).vertices, TRIANGLE)
+
+
 def test_what_reads_files_of_strangers_is_tested_in_the_least_version_that_is_allowed():
     project = tomllib.loads((meshes.ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = [line for name in ("io", "neuro") for line in project["optional-dependencies"][name]]
@@ -253,6 +296,18 @@ def test_damaged_stl_is_called_damaged(tmp_path, monkeypatch):
         with pytest.raises(FileError, match=r"damaged|no triangles") as caught:
             read_mesh(tmp_path / "a.stl")
         assert "module" not in str(caught.value)
+
+
+def test_a_library_that_is_missing_is_named(tmp_path, monkeypatch):
+    trimesh = pytest.importorskip("trimesh")
+
+    def load_mesh(*_, **__):
+        import nothing_such  # noqa: F401
+
+    monkeypatch.setattr(trimesh, "load_mesh", load_mesh)
+    (tmp_path / "a.stl").write_bytes(b"solid x")
+    with pytest.raises(FileError, match=r"it needs a further library .*nothing_such"):
+        read_mesh(tmp_path / "a.stl")
 
 
 ARRAY = (
@@ -308,12 +363,6 @@ def test_gifti_leads_to_no_other_file(tmp_path):
             read_mesh(tmp_path / "a.surf.gii")
 
 
-def npy(shape, kind="<f8"):
-    """The head of an array, without its numbers."""
-    head = str({"descr": kind, "fortran_order": False, "shape": shape}).ljust(117) + "\n"
-    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode()
-
-
 @pytest.mark.parametrize(
     ("shape", "kind", "said"),
     [
@@ -332,6 +381,12 @@ def test_arrays_that_cannot_be_are_errors_of_the_file(shape, kind, said, tmp_pat
         with pytest.raises(FileError, match=said) as caught:
             read(tmp_path / name)
         assert "allow_pickle" not in str(caught.value)
+
+
+def test_archives_without_arrays_say_so(tmp_path):
+    np.savez(tmp_path / "a.npz")
+    with pytest.raises(FileError, match="it has no arrays"):
+        read_values(tmp_path / "a.npz")
 
 
 @ONLY_POSIX

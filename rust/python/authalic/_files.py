@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from . import _native, _objects
-from ._reading import check_regular, numpys, short, words
+from ._reading import check_regular, open_numpy, short, words
 from ._warnings import RegistrationWarning
 
 FORMAT = 1
@@ -63,12 +63,11 @@ def load(path: str | os.PathLike[str]) -> Any:
     >>> authalic.load(file) == result
     True
     """
-    with _opened(path) as entries:
-        table = _table(entries, path)
-        try:
-            result = _made(table["content"], entries)
-        except Exception as problem:  # zip files and numpy raise what they like for a damaged file
-            raise _damage(path, problem) from problem
+    try:
+        with _opened(path) as entries:
+            result = _in(entries, path)
+    except _NoResult as problem:
+        raise ValueError(str(problem)) from problem.__cause__
     if not isinstance(result, _native.Result):
         raise ValueError(
             f"{os.fspath(path)} is damaged: it holds {type(result).__name__} in place of a result"
@@ -97,6 +96,15 @@ def provenance_in(path: str | os.PathLike[str]) -> dict[str, Any] | None:
 
 class _NoResult(ValueError):
     """The file is no archive of numpy."""
+
+
+def _in(entries: Mapping[str, Any], path: str | os.PathLike[str]) -> Any:
+    """What the entries of an archive describe."""
+    table = _table(entries, path)
+    try:
+        return _made(table["content"], entries)
+    except Exception as problem:  # zip files and numpy raise what they like for a damaged file
+        raise _damage(path, problem) from problem
 
 
 def _described(value: Any, place: str, arrays: Arrays) -> Any:
@@ -145,7 +153,7 @@ def _opened(path: str | os.PathLike[str]) -> Iterator[Mapping[str, Any]]:
     with ExitStack() as stack:
         try:
             check_regular(path)
-            entries = stack.enter_context(numpys(path))
+            entries = stack.enter_context(open_numpy(path))
         except OSError:
             raise
         except Exception as problem:

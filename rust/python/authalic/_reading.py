@@ -11,6 +11,9 @@ import numpy as np
 
 _LONGEST = 300
 
+_GUESSERS = ("chardet", "charset_normalizer")
+"""Libraries that guess how text is encoded; some readers load them for damaged files only."""
+
 
 def check_regular(path: str | os.PathLike[str]) -> None:
     """Refuses devices and pipes, which may never end, with `ValueError`. Folders fail as they are opened."""
@@ -20,7 +23,7 @@ def check_regular(path: str | os.PathLike[str]) -> None:
 
 
 @contextlib.contextmanager
-def numpys(path: str | os.PathLike[str]) -> Iterator[Any]:
+def open_numpy(path: str | os.PathLike[str]) -> Iterator[Any]:
     """What numpy reads from an npz or npy file: the entries of an archive, or one array. No pickles.
 
     Raises `OSError` where the file cannot be opened, and what zip files and numpy raise where it is damaged.
@@ -28,7 +31,7 @@ def numpys(path: str | os.PathLike[str]) -> Iterator[Any]:
     with open(path, "rb") as file:
         try:
             found = np.load(file, allow_pickle=False)
-        except OSError as problem:  # of places in the file that there are not
+        except OSError as problem:  # seeks beyond the end
             raise ValueError(str(problem)) from problem
         with found if isinstance(found, np.lib.npyio.NpzFile) else contextlib.nullcontext():
             yield found
@@ -44,8 +47,10 @@ def words(problem: BaseException) -> str:
             return f"it has a number that is too large ({said})"
         case UnicodeDecodeError():
             return f"it is no text in {problem.encoding}: byte {problem.start} is not"
-        case ImportError():  # some libraries load others for damaged files only
+        case ImportError(name=name) if name in _GUESSERS:
             return "it is damaged, or of another format"
+        case ImportError():
+            return f"it needs a further library ({said})"
     if "allow_pickle" in said:  # numpy says so of all that it does not know, and how to load it unsafely
         return "it is no npz or npy, or holds Python objects (pickles), which can run code and are never read"
     if said.startswith("cannot reshape array"):
@@ -53,8 +58,13 @@ def words(problem: BaseException) -> str:
     return said if str(problem) else f"it is damaged ({said})"
 
 
-def short(text: str) -> str:
+def short(text: str, longest: int = _LONGEST) -> str:
     """The text on one line, cut where it is long, with control characters escaped."""
-    line = " ".join(text[: 4 * _LONGEST].split())
+    line = " ".join(text[: 4 * longest].split())
     line = "".join(each if each.isprintable() else ascii(each)[1:-1] for each in line)
-    return line if len(line) <= _LONGEST else f"{line[:_LONGEST]}…"
+    return line if len(line) <= longest else f"{line[:longest]}…"
+
+
+def there_is(count: int, noun: str, nouns: str) -> str:
+    """How many there are, in words: there is 1 vertex, there are 2 vertices."""
+    return f"there is 1 {noun}" if count == 1 else f"there are {count} {nouns}"

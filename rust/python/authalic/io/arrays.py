@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .._reading import numpys
+from .._reading import open_numpy
 from . import strict_json
 from .errors import FileError
 from .mesh import MeshData, Reals
@@ -17,7 +17,7 @@ _TO_SPACES = str.maketrans(",;\t", "   ")
 
 def read_mesh(path: Path, name: str) -> MeshData:
     """npz with the arrays `vertices` and `faces`, and where there are UVs `uv` and `uv_faces`."""
-    with numpys(path) as arrays:
+    with open_numpy(path) as arrays:
         _check_archive(arrays)
         absent = {"vertices", "faces"} - set(arrays)
         if absent:
@@ -38,7 +38,7 @@ def write_mesh(path: Path, mesh: MeshData, name: str) -> None:
 
 def read_values(path: Path, name: str) -> Reals:
     if name == "npy":
-        with numpys(path) as array:
+        with open_numpy(path) as array:
             return np.asarray(array, np.float64)
     if name == "npz":
         return _only_array(path)
@@ -84,8 +84,10 @@ def _check_archive(found: Any) -> None:
 
 
 def _only_array(path: Path) -> Reals:
-    with numpys(path) as arrays:
+    with open_numpy(path) as arrays:
         _check_archive(arrays)
+        if len(arrays) == 0:
+            raise ValueError("it has no arrays")
         name = "values" if "values" in arrays else next(iter(arrays))
         if name != "values" and len(arrays) > 1:
             raise ValueError(f"it has several arrays and none named values: {sorted(arrays)}")

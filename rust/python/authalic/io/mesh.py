@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .._reading import there_is
+
 Reals = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
@@ -103,9 +105,8 @@ class MeshData:
         if not bad.any():
             return None
         face, corner = np.argwhere(bad)[0]
-        there = "is 1 UV point" if len(self.uv) == 1 else f"are {len(self.uv)} UV points"
-        point = self.uv_faces[face, corner]
-        return f"face {face} has UV point {point} at a corner, but there {there}, counted from 0"
+        point, there = self.uv_faces[face, corner], there_is(len(self.uv), "UV point", "UV points")
+        return f"face {face} has UV point {point} at a corner, but {there}, counted from 0"
 
 
 _UV_COLUMNS = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"), ("texture_s", "texture_t"))

@@ -9,12 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
+from .._reading import short, there_is
 from .errors import FileError
 from .mesh import Indices, MeshData, Reals, fans
 from .words import check_plain
 
 _DIGITS = 20
-"""Indices of more digits are not quoted."""
+"""So many of an index are quoted."""
 
 
 def read_mesh(path: Path, name: str) -> MeshData:
@@ -24,7 +25,7 @@ def read_mesh(path: Path, name: str) -> MeshData:
     polygons: list[list[int]] = []
     uv_polygons: list[list[int]] = []
     numbers: list[int] = []
-    with open(path, encoding="utf-8", errors="replace") as file:
+    with open(path, encoding="utf-8-sig", errors="replace") as file:
         for number, line in enumerate(_joined(file), start=1):
             words = line.split()
             keyword = words[0] if words else ""
@@ -105,13 +106,8 @@ def _check_range(
     """Refuses corners that have no point among `count`; `numbers` are the lines of the polygons."""
     for number, polygon in zip(numbers, polygons, strict=True):
         if polygon and max(polygon) >= count:
-            there = f"is 1 {noun}" if count == 1 else f"are {count} {nouns}"
-            raise FileError(path, f"line {number} names {noun} {_short(max(polygon) + 1)}, but there {there}")
-
-
-def _short(number: int) -> str:
-    """A number as a message has it."""
-    return str(number) if number < 10**_DIGITS else f"of more than {_DIGITS} digits"
+            point, there = short(str(max(polygon) + 1), _DIGITS), there_is(count, noun, nouns)
+            raise FileError(path, f"line {number} names {noun} {point}, but {there}")
 
 
 def _real_lines(word: str, rows: Reals) -> list[str]:

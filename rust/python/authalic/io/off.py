@@ -5,12 +5,12 @@ import re
 from pathlib import Path
 
 from .mesh import MeshData, fans
-from .words import check_count, quoted, reals, whole
+from .words import check_count, check_plain, quoted, reals, whole
 
 
 def read_mesh(path: Path, name: str) -> MeshData:
     """ASCII OFF. What else there is on the line of a vertex or a polygon is colors."""
-    text = re.sub(r"#.*", "", path.read_text(encoding="ascii"))
+    text = re.sub(r"#.*", "", path.read_text(encoding="utf-8-sig"))
     head = re.match(r"\s*(?:ST)?C?N?OFF\b(?! *BINARY)", text)
     if head is None:
         raise ValueError("it does not begin with the word OFF of an ASCII file")
@@ -69,6 +69,7 @@ def _polygon(words: list[str], place: int, number: int) -> list[int]:
     check_count(size, f"corners of polygon {number}", len(words) - place - 1)
     corners = words[place + 1 : place + 1 + size]
     try:
+        check_plain(corners)
         return list(map(int, corners))
     except ValueError as error:
         said = quoted(" ".join(corners))

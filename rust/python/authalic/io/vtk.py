@@ -18,7 +18,9 @@ _TYPES = {
 }
 """Big-endian, as all binary legacy files."""
 
-_GRID = re.compile(rb"(?im)^\s*DIMENSIONS\s+(\S+)\s+(\S+)\s+(\S+)")
+_DATASET = re.compile(rb"(?im)^\s*DATASET\s+(\S+)")
+_GRIDS = {b"STRUCTURED_POINTS", b"STRUCTURED_GRID", b"RECTILINEAR_GRID"}
+_SIZES = re.compile(rb"(?im)^\s*DIMENSIONS\s+([-+\d_]+)\s+([-+\d_]+)\s+([-+\d_]+)(?!\S)")
 _MOST_POINTS = 1_000_000
 """Of a grid that states how many points it has and does not list them, unless the file has as many bytes."""
 
@@ -27,12 +29,20 @@ write_mesh = meshio_formats.write_mesh
 
 def read_mesh(path: Path, name: str) -> MeshData:
     content = path.read_bytes()
-    if b"POLYDATA" in content[:1000].upper():
+    body = b"".join(content.split(b"\n", 3)[3:])  # below the version, the title and the coding
+    kinds = [kind.upper() for kind in _DATASET.findall(body)]
+    if kinds[:1] == [b"POLYDATA"]:
         return _Polydata(content).mesh()
-    for grid in _GRID.finditer(content):
-        sizes = [whole(size.decode("ascii", "replace"), "a size of a grid") for size in grid.groups()]
-        check_count(prod(map(abs, sizes)), "points of a grid", max(_MOST_POINTS, len(content)))
+    if _GRIDS & set(kinds):
+        _check_grids(body)
     return meshio_formats.read_mesh(path, name)
+
+
+def _check_grids(body: bytes) -> None:
+    """Refuses grids of more points than any that meshio could list."""
+    for found in _SIZES.finditer(body):
+        sizes = [whole(size.decode("ascii"), "a size of a grid") for size in found.groups()]
+        check_count(prod(map(abs, sizes)), "points of a grid", max(_MOST_POINTS, len(body)))
 
 
 class _Polydata:

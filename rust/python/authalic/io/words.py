@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from .._reading import short
 from .mesh import Reals
 
 _LONGEST_QUOTE = 40
@@ -10,7 +11,7 @@ _LONGEST_QUOTE = 40
 
 def quoted(text: str) -> str:
     """A piece of a file for a message: not too long, and without control characters."""
-    return repr(text if len(text) <= _LONGEST_QUOTE else f"{text[:_LONGEST_QUOTE]}…")
+    return f"'{short(text, _LONGEST_QUOTE)}'"
 
 
 def check_plain(words: list[str]) -> None:

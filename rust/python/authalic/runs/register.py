@@ -122,7 +122,7 @@ def _check_rows(path: Path, values: np.ndarray, mesh: MeshData) -> None:
 
 def _curves(path: Path) -> dict[str, Any]:
     try:
-        pair = json.loads(path.read_text(encoding="utf-8"))
+        pair = json.loads(path.read_text(encoding="utf-8-sig"))
     except ValueError as error:
         raise FileError(path, f"it is no JSON: {error}") from error
     if not isinstance(pair, dict) or not {"source", "target"} <= pair.keys():

@@ -614,10 +614,10 @@ def distortion(
     density: ArrayLike | None = None,
 ) -> Distortion: ...
 def distortions(
-    surfaces: Sequence[_Surface],
-    images: Sequence[ArrayLike],
+    surfaces: Iterable[_Surface],
+    images: Iterable[ArrayLike],
     *,
-    densities: Sequence[ArrayLike | None] | None = None,
+    densities: Iterable[ArrayLike | None] | None = None,
 ) -> list[Distortion | MeshError]: ...
 def disk_map(
     vertices: ArrayLike | _Handle,
@@ -639,9 +639,9 @@ def disk_map(
     progress: _Progress | None = None,
 ) -> DiskMap: ...
 def disk_maps(
-    surfaces: Sequence[_Surface],
+    surfaces: Iterable[_Surface],
     *,
-    densities: Sequence[ArrayLike | None] | None = None,
+    densities: Iterable[ArrayLike | None] | None = None,
     method: Literal["gauss_newton", "conjugate_gradient", "fixed_point"] = "gauss_newton",
     boundary: Literal["sliding", "arc_length", "free", "rectangle"] = "sliding",
     angle_weight: float = 0.0,

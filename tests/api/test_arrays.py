@@ -138,6 +138,24 @@ def test_seams_and_start_maps_of_any_layout(layout, expected):
     )
 
 
+def test_memoryviews_are_arrays():
+    start = BALL / np.linalg.norm(BALL, axis=1)[:, None]
+    maps = [authalic.sphere_map(BALL, BALL_FACES, initial=given) for given in (start, memoryview(start))]
+    assert (maps[0].positions == maps[1].positions).all()
+    assert maps[0].provenance["options"] == maps[1].provenance["options"]
+    with pytest.raises(authalic.MeshError, match="density must be of shape"):
+        authalic.disk_map(VERTICES, FACES, density=memoryview(np.ones((len(FACES), 2))))
+
+
+def test_lists_in_lists_without_end_are_refused():
+    nested = []
+    for _ in range(100_000):
+        nested = [nested]
+    with pytest.raises(authalic.MeshError, match="density must be") as caught:
+        authalic.disk_map(VERTICES, FACES, density=nested)
+    assert caught.value.kind == "invalid_array"
+
+
 def test_inputs_are_left_unchanged():
     arrays = {
         "vertices": VERTICES.copy(),

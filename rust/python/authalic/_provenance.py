@@ -17,7 +17,7 @@ _MOST_NUMBERS = 16
 
 def plain(options: Mapping[str, object]) -> dict[str, Any]:
     """Options as text, numbers, lists and dictionaries; callbacks are left out."""
-    return {name: _plain(value) for name, value in options.items() if not callable(value)}
+    return {name: _kept(value) for name, value in options.items() if not callable(value)}
 
 
 def described(
@@ -43,6 +43,13 @@ def copied(provenance: Mapping[str, Any]) -> dict[str, Any]:
     return copy.deepcopy(dict(provenance))
 
 
+def _kept(value: object) -> Any:
+    try:
+        return _plain(value)
+    except RecursionError:  # lists in lists without end, which the function itself refuses
+        return type(value).__name__
+
+
 def _plain(value: object) -> Any:
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
@@ -50,7 +57,8 @@ def _plain(value: object) -> Any:
         return _array(value)
     if isinstance(value, Mapping):
         return {str(key): _plain(entry) for key, entry in value.items()}
-    if isinstance(value, Sequence) and not isinstance(value, (bytes, bytearray)):
+    # the elements of a memoryview with several axes cannot be taken one by one
+    if isinstance(value, Sequence) and not isinstance(value, (bytes, bytearray, memoryview)):
         return _sequence(value)
     try:
         return _array(np.asarray(value))
